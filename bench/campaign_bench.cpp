@@ -2,6 +2,7 @@
 #include <cstdlib>
 #include <ctime>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,7 +15,6 @@
 #include <tether/base/error.h>
 #include <tether/campaign/campaign_folder.h>
 #include <tether/campaign/run_campaign.h>
-#include <tether/os/program.h>
 #include <tether/runner/campaign_trials.h>
 #include <tether/runner/trial_server.h>
 #include <tether/scenario/campaign.h>
@@ -106,12 +106,41 @@ runner::BackEnd no_back_end(const std::string&) {
           .files = [] { return std::vector<std::filesystem::path>{}; }};
 }
 
+/// The word that follows `option`.
+std::string value_of(const std::vector<std::string>& arguments, std::string_view option) {
+  for (std::size_t i = 0; i + 1 < arguments.size(); ++i)
+    if (arguments[i] == option) return arguments[i + 1];
+  return "";
+}
+
+runner::TrialService trial_service(sim::WorldStore& worlds) {
+  const auto scenario =
+      std::make_shared<scenario::Scenario>(campaign_of(1).scenarios.front().scenario);
+  return {.prepare =
+              [scenario, &worlds](const std::vector<std::string>&) {
+                worlds.load(scenario::world_request(*scenario, 1), nullptr);
+              },
+          .run =
+              [scenario](const std::vector<std::string>& arguments) {
+                compute();
+                auto result = campaign::make_setup_failure(
+                    *scenario, *scenario->find_condition("host"),
+                    std::stoull(value_of(arguments, "--seed")), "computed");
+                result.end = "finished";
+                result.outcome = campaign::Outcome::kGoalReached;
+                campaign::write_result(value_of(arguments, "--out"), result);
+                return 0;
+              }};
+}
+
 void run_campaign(const std::filesystem::path& out, int trials, int jobs) {
   const scenario::Campaign campaign = campaign_of(trials);
-  const auto files = runner::files_of_trials(campaign, no_back_end).files;
+  sim::WorldStore worlds;
+  const auto files = runner::files_of_trials(campaign, no_back_end, worlds).files;
+  runner::TrialServers servers;
+  servers.start(jobs, trial_service(worlds));
   const auto settings = campaign::campaign_settings(campaign, {}, files);
   const campaign::CampaignFolder folder(out, campaign, settings, campaign::OpenMode::kFresh);
-  runner::TrialServers servers;
   const auto outcome = campaign::run_campaign(
       folder, campaign, [&](const campaign::TrialPlan& plan) { return servers.run(plan, {}); },
       {.jobs = jobs,
@@ -122,37 +151,9 @@ void run_campaign(const std::filesystem::path& out, int trials, int jobs) {
   if (outcome.failed > 0) throw Error(ErrorCode::kSetup, "a trial failed; see " + out.string());
 }
 
-/// The word that follows `option`.
-std::string value_of(const std::vector<std::string>& arguments, std::string_view option) {
-  for (std::size_t i = 0; i + 1 < arguments.size(); ++i)
-    if (arguments[i] == option) return arguments[i + 1];
-  return "";
-}
-
-int serve() {
-  const scenario::Scenario scenario = campaign_of(1).scenarios.front().scenario;
-  sim::WorldStore worlds;
-  return runner::serve_trials({.prepare =
-                                   [&](const std::vector<std::string>&) {
-                                     worlds.load(scenario::world_request(scenario, 1), nullptr);
-                                   },
-                               .run =
-                                   [&](const std::vector<std::string>& arguments) {
-                                     compute();
-                                     auto result = campaign::make_setup_failure(
-                                         scenario, *scenario.find_condition("host"),
-                                         std::stoull(value_of(arguments, "--seed")), "computed");
-                                     result.end = "finished";
-                                     result.outcome = campaign::Outcome::kGoalReached;
-                                     campaign::write_result(value_of(arguments, "--out"), result);
-                                     return 0;
-                                   }});
-}
-
 }  // namespace
 
 int main(int count, char** words) {
-  if (count == 2 && words[1] == runner::kServeTrials) return serve();
   const int trials = count > 1 ? std::atoi(words[1]) : 40;
   const auto scratch =
       std::filesystem::temp_directory_path() / fmt::format("campaign_bench-{}", getpid());

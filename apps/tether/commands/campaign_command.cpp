@@ -1,6 +1,7 @@
 #include "back_ends.h"
 #include "cluster/fly_by_workers.h"
 #include "commands/commands.h"
+#include "commands/trial_service.h"
 #include "options/junit_option.h"
 #include "options/simulator_option.h"
 #include "options/trial_options.h"
@@ -27,7 +28,6 @@
 #include <tether/report/junit.h>
 #include <tether/runner/campaign_trials.h>
 #include <tether/runner/trial_folder.h>
-#include <tether/runner/trial_server.h>
 #include <tether/scenario/campaign.h>
 #include <tether/scenario/shipped_files.h>
 
@@ -51,11 +51,10 @@ scenario::Campaign load(const CampaignOptions& options) {
   return campaign;
 }
 
-campaign::CampaignOutcome fly(const campaign::CampaignFolder& folder,
+campaign::CampaignOutcome fly(runner::TrialServers& servers, const campaign::CampaignFolder& folder,
                               const scenario::Campaign& campaign, int jobs,
                               const std::function<void()>& check, const std::stop_token& stop) {
   ProgressBar bar;
-  runner::TrialServers servers;
   try {
     const auto outcome = campaign::run_campaign(
         folder, campaign, [&](const campaign::TrialPlan& plan) { return servers.run(plan, stop); },
@@ -139,9 +138,12 @@ int run_trials(const CampaignOptions& given, const std::stop_token& stop) {
     cluster.emplace(workers::Start{options.cluster, jobs, std::filesystem::current_path(),
                                    command_of(options, campaign)},
                     out, runner::trial_arguments);
-  const auto [files, warnings] = runner::files_of_trials(campaign, find_back_end);
+  sim::WorldStore worlds;
+  const auto [files, warnings] = runner::files_of_trials(campaign, find_back_end, worlds);
   if (!warnings.empty())
     say("{}\n", summary_of(warnings, std::string(runner::kWarningsFile) + " of each trial"));
+  runner::TrialServers servers;
+  if (!cluster) servers.start(jobs, trial_service(worlds));
   campaign::Settings versions = versions_of(campaign, options.reading);
   if (cluster) versions["machine"] = workers::kManyMachines;
   const campaign::Settings settings = campaign::campaign_settings(campaign, versions, files);
@@ -157,7 +159,7 @@ int run_trials(const CampaignOptions& given, const std::stop_token& stop) {
     outcome = *flown;
   } else {
     outcome = fly(
-        folder, campaign, jobs,
+        servers, folder, campaign, jobs,
         [&, &files = files] { campaign::require_unchanged(campaign, settings, files); }, stop);
   }
   if (!options.junit.empty())

@@ -15,7 +15,6 @@
 
 #include <tether/base/error.h>
 #include <tether/os/program.h>
-#include <tether/os/text_file.h>
 #include <tether/report/junit.h>
 #include <tether/report/size_report.h>
 #include <tether/scenario/shipped_files.h>
@@ -142,11 +141,10 @@ int find_size(const SizeOptions& options, const std::stop_token& stop) {
   if (const auto end = flights.fly(report); end != SizeTrials::End::kAnswered)
     return flights.say_why(end);
   report.pace = report::pace_near_answer(report, out);
-  write_answer({report::size_answers(report), report::size_advice(report),
-                report::size_json(report), report::size_plot(report), report::size_page(report)},
-               out);
-  if (!options.junit.empty())
-    os::write_file_atomically(options.junit, report::to_junit(report, out));
+  write_answer(
+      {report::size_answers(report), report::size_advice(report), report::size_json(report),
+       report::size_plot(report), report::size_page(report), report::to_junit(report, out)},
+      out, options.junit);
   return code_of(report);
 }
 

@@ -1,6 +1,7 @@
 #include "commands/size_trials.h"
 
 #include "back_ends.h"
+#include "commands/trial_service.h"
 #include "options/refuse_option.h"
 #include "options/simulator_option.h"
 #include "options/trial_options.h"
@@ -60,9 +61,10 @@ void require_enough_trials(const SizeOptions& options, double miss) {
       static_cast<std::size_t>(std::ceil(std::log(miss) / std::log(options.success)));
   if (options.max_trials >= least) return;
   refuse_option("--max-trials",
-                fmt::format("{} flights cannot show a success of {} with a confidence of {}, even "
+                fmt::format("{} flight{} cannot show a success of {} with a confidence of {}, even "
                             "if all succeed. Use at least {}.",
-                            options.max_trials, options.success, options.confidence, least));
+                            options.max_trials, options.max_trials == 1 ? "" : "s", options.success,
+                            options.confidence, least));
 }
 
 SizeTrials::SizeTrials(const SizeOptions& options, scenario::Campaign campaign,
@@ -94,13 +96,15 @@ SizeTrials::SizeTrials(const SizeOptions& options, scenario::Campaign campaign,
   }
 }
 
-std::vector<std::filesystem::path> SizeTrials::checked_files() const {
+std::vector<std::filesystem::path> SizeTrials::checked_files() {
   workers::require_allowed(campaign_, options_.cluster);
   campaign::require_jobs_allowed(campaign_, jobs_);
   require_ports(campaign_, jobs_);
-  const auto [files, warnings] = runner::files_of_trials(campaign_, find_back_end);
+  sim::WorldStore worlds;
+  const auto [files, warnings] = runner::files_of_trials(campaign_, find_back_end, worlds);
   if (!warnings.empty())
     say("{}\n", summary_of(warnings, std::string(runner::kWarningsFile) + " of each flight"));
+  if (!options_.cluster.uses_workers()) servers_.start(jobs_, trial_service(worlds));
   return files;
 }
 
@@ -212,13 +216,15 @@ int SizeTrials::say_why(End end) const {
   return exit_code(ErrorCode::kSetup);
 }
 
-void write_answer(const SizeAnswer& answer, const std::filesystem::path& out) {
+void write_answer(const SizeAnswer& answer, const std::filesystem::path& out,
+                  const std::filesystem::path& junit) {
   os::write_file_atomically(out / kSizeFile, answer.json);
   fmt::print("{}", report::answer_text(answer.answers, answer.advice, report::Markup::kPlain));
   os::write_file_atomically(out / kSizeDrawing, report::draw_svg(answer.plot));
   os::write_file_atomically(out / campaign::kReportFile, answer.page);
   fmt::print("Page: {}\nDrawing: {}\nNumbers: {}\n", (out / campaign::kReportFile).string(),
              (out / kSizeDrawing).string(), (out / kSizeFile).string());
+  if (!junit.empty()) os::write_file_atomically(junit, answer.junit);
 }
 
 }  // namespace tether::app

@@ -74,7 +74,7 @@ class SizeTrials {
  private:
   using Plans = std::vector<const campaign::TrialPlan*>;
 
-  std::vector<std::filesystem::path> checked_files() const;
+  std::vector<std::filesystem::path> checked_files();
   std::string text_of(const campaign::TrialPlan& plan) const;
   bool run(const Plans& plans, const Questions& questions);
   void take(const campaign::TrialPlan& plan, const Questions& questions);
@@ -85,13 +85,14 @@ class SizeTrials {
   int jobs_;
   std::stop_token stop_;
   std::function<std::string(const campaign::TrialPlan&)> name_;
+  // Before the folder: without Slurm, nothing is written; and copies of this process must not hold
+  // its locks.
+  runner::TrialServers servers_;
   std::vector<std::filesystem::path> files_;
-  std::unique_ptr<workers::Cluster>
-      cluster_;  // before the folder: without Slurm, nothing is written
+  std::unique_ptr<workers::Cluster> cluster_;
   campaign::Settings settings_;
   campaign::CampaignFolder folder_;
   std::map<std::filesystem::path, const campaign::TrialPlan*> missing_;  // by its folder
-  runner::TrialServers servers_;
   StatusLine line_;
   std::uint64_t next_seed_ = 1;
   std::size_t flown_ = 0;
@@ -108,7 +109,10 @@ struct SizeAnswer {
   std::string json;
   report::Plot plot;
   std::string page;
+  std::string junit;
 };
-void write_answer(const SizeAnswer& answer, const std::filesystem::path& out);
+/// @param junit the file for JUnit's form of it; empty: none
+void write_answer(const SizeAnswer& answer, const std::filesystem::path& out,
+                  const std::filesystem::path& junit);
 
 }  // namespace tether::app

@@ -12,7 +12,6 @@
 
 #include <fmt/format.h>
 
-#include <tether/os/text_file.h>
 #include <tether/report/uavs_report.h>
 #include <tether/scenario/campaign.h>
 
@@ -142,11 +141,10 @@ int find_uavs(const SizeOptions& options, const std::stop_token& stop) {
   report.not_flown = trials.not_flown();
   if (end != SizeTrials::End::kAnswered) return trials.say_why(end);
   report.pace = report::pace_at_limit(report, out);
-  write_answer({report::uavs_answers(report), report::uavs_advice(report),
-                report::uavs_json(report), report::uavs_plot(report), report::uavs_page(report)},
-               out);
-  if (!options.junit.empty())
-    os::write_file_atomically(options.junit, report::to_junit(report, out));
+  write_answer(
+      {report::uavs_answers(report), report::uavs_advice(report), report::uavs_json(report),
+       report::uavs_plot(report), report::uavs_page(report), report::to_junit(report, out)},
+      out, options.junit);
   return report.answer.is_decided() ? 0 : 1;
 }
 

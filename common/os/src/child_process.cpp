@@ -1,9 +1,11 @@
 #include <cerrno>
 #include <chrono>
+#include <cstdio>
 #include <cstdlib>
 #include <functional>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <thread>
 
@@ -18,6 +20,7 @@
 #include <tether/base/system_reason.h>
 #include <tether/os/child_process.h>
 #include <tether/os/file_descriptor.h>
+#include <tether/os/interrupt.h>
 #include <tether/os/pipe.h>
 #include <tether/os/process_table.h>
 #include <tether/os/program.h>
@@ -130,8 +133,18 @@ std::vector<pid_t> orphans() {
   return found;
 }
 
-// What is the parent's alone: its lock, which is held during the fork, and its children.
+// As exec does.
+void forget_handlers() {
+  for (int number = 1; number < NSIG; ++number) {
+    struct sigaction action {};
+    if (sigaction(number, nullptr, &action) == 0 && action.sa_handler != SIG_IGN)
+      signal(number, SIG_DFL);
+  }
+}
+
+// What is the parent's alone: its handlers, its lock, which is held during the fork, its children.
 [[noreturn]] void call(const Image& image, int report) {
+  forget_handlers();
   close(report);
   started().processes.clear();
   started().mutex.unlock();
@@ -185,12 +198,18 @@ ChildProcess::ChildProcess(const ChildCommand& command)
                     command.death_signal,
                     command.body};
   const pid_t parent = getpid();
+  std::optional<Interrupt::Pause> alone;
+  if (command.body) {
+    alone.emplace();
+    std::fflush(stdout);  // or the copy writes the same again
+  }
   {
     const std::lock_guard lock(started().mutex);
     pid_ = fork();
     if (pid_ == 0) become(image, streams, report.write_end.get(), parent);
     if (pid_ > 0) started().processes.insert(pid_);
   }
+  alone.reset();
   report.write_end = FileDescriptor();
   int why = pid_ < 0 ? errno : 0;
   // Nothing can be read once the exec has succeeded.

@@ -3,7 +3,6 @@
 #include <condition_variable>
 #include <csignal>
 #include <mutex>
-#include <optional>
 #include <system_error>
 
 #include <unistd.h>
@@ -26,6 +25,7 @@ constexpr auto kSameInterrupt = std::chrono::milliseconds(500);
 constexpr char kEnd = 0;
 
 volatile std::sig_atomic_t g_signals = -1;  // where the handler writes
+Interrupt* g_interrupt = nullptr;
 
 extern "C" void pass_on(int signal_number) {
   const int before = errno;
@@ -39,12 +39,8 @@ extern "C" void pass_on(int signal_number) {
 Interrupt::Interrupt() : signals_(make_pipe()) {
   if (!signals_.write_end)
     throw Error(ErrorCode::kSetup, "cannot create a pipe for signals: " + reason_of(errno));
-  try {
-    watcher_ = std::thread([this] { watch(); });
-  } catch (const std::system_error& e) {
-    throw Error(ErrorCode::kSetup,
-                "cannot start a thread for signals: " + reason_of(e.code().value()));
-  }
+  start();
+  g_interrupt = this;
   g_signals = signals_.write_end.get();
   struct sigaction action {};
   action.sa_handler = pass_on;
@@ -59,20 +55,41 @@ Interrupt::Interrupt() : signals_(make_pipe()) {
 Interrupt::~Interrupt() {
   for (const int signal : {SIGINT, SIGTERM, SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_DFL);
   if (!ignores_hangup_) std::signal(SIGHUP, SIG_DFL);
+  g_interrupt = nullptr;
+  end_thread();
+}
+
+// In a copy of the process, the thread has already ended.
+Interrupt::Pause::Pause()
+    : paused_(g_interrupt != nullptr && g_interrupt->watcher_.joinable() ? g_interrupt : nullptr) {
+  if (paused_ != nullptr) paused_->end_thread();
+}
+
+Interrupt::Pause::~Pause() {
+  if (paused_ != nullptr) paused_->start();
+}
+
+void Interrupt::start() try {
+  watcher_ = std::thread([this] { watch(); });
+} catch (const std::system_error& e) {
+  throw Error(ErrorCode::kSetup,
+              "cannot start a thread for signals: " + reason_of(e.code().value()));
+}
+
+void Interrupt::end_thread() {
   write_all(signals_.write_end, {&kEnd, 1});
   watcher_.join();
 }
 
 void Interrupt::watch() {
-  std::optional<Steady::time_point> first;
   for (char signal = 0;;) {
     const ssize_t got = read(signals_.read_end.get(), &signal, 1);
     if (got < 0 && errno == EINTR) continue;
     if (got != 1 || signal == kEnd) return;
     stop_.request_stop();
     if (signal == SIGHUP) continue;  // the kernel and the shell send one each, at any distance
-    if (first && Steady::now() - *first > kSameInterrupt) _exit(128 + signal);
-    if (!first) first = Steady::now();
+    if (first_ && Steady::now() - *first_ > kSameInterrupt) _exit(128 + signal);
+    if (!first_) first_ = Steady::now();
   }
 }
 

@@ -5,6 +5,7 @@
 #include <memory>
 #include <sstream>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -13,6 +14,7 @@
 #include <tether/base_testing/scratch_folder.h>
 #include <tether/base_testing/thrown_error.h>
 #include <tether/os/child_process.h>
+#include <tether/os/interrupt.h>
 #include <tether/os/machine.h>
 #include <tether/os/pipe.h>
 #include <tether/os/process_table.h>
@@ -72,6 +74,23 @@ TEST_F(Child, CallsItsBodyInACopyOfThisProcessThatCanStartProgramsItself) {
                               }});
   EXPECT_EQ(exit.code, 7);
   EXPECT_EQ(changed, 1);
+}
+
+TEST_F(Child, HandlesSignalsOfACopyAsAProgramDoes) {
+  const Interrupt interrupt;
+  const auto in_a_copy = [&](std::function<int()> body) {
+    return run({.arguments = {"a copy"}, .environment = {}, .log = log_, .body = std::move(body)});
+  };
+  EXPECT_EQ(in_a_copy([] { return raise(SIGTERM); }).code, kSignalled + SIGTERM);
+  EXPECT_FALSE(interrupt.token().stop_requested());
+  EXPECT_EQ(in_a_copy([&] { return in_a_copy([] { return 5; }).code; }).code, 5);
+  EXPECT_EQ(in_a_copy([] {
+              const Interrupt own;
+              raise(SIGINT);
+              while (!own.token().stop_requested()) std::this_thread::yield();
+              return 6;
+            }).code,
+            6);
 }
 
 TEST_F(Child, AddsVariablesToTheEnvironmentOfThisProcess) {

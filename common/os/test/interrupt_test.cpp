@@ -59,6 +59,17 @@ TEST(Interrupt, LeavesSighupIgnoredAsNohupWants) {
   EXPECT_EQ(std::signal(SIGHUP, SIG_DFL), SIG_IGN);
 }
 
+TEST(Interrupt, TakesSignalsOfAPauseAfterIt) {
+  const Interrupt interrupt;
+  {
+    const Interrupt::Pause pause;
+    raise(SIGINT);
+    EXPECT_FALSE(interrupt.token().stop_requested());
+  }
+  wait_for(interrupt.token());
+  EXPECT_TRUE(interrupt.token().stop_requested());
+}
+
 TEST(SleepUnlessStopped, EndsWithAStopRequest) {
   std::stop_source stop;
   stop.request_stop();

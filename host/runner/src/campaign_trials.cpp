@@ -10,7 +10,7 @@
 #include <tether/campaign/campaign_plan.h>
 #include <tether/os/program.h>
 #include <tether/runner/campaign_trials.h>
-#include <tether/sim_sdf/load_world.h>
+#include <tether/sim_sdf/world_store.h>
 
 namespace tether::runner {
 
@@ -57,14 +57,14 @@ std::set<std::string> simulators(const scenario::Campaign& campaign) {
   return names;
 }
 
-CampaignFiles files_of_trials(const scenario::Campaign& campaign,
-                              const FindBackEnd& find_back_end) {
+CampaignFiles files_of_trials(const scenario::Campaign& campaign, const FindBackEnd& find_back_end,
+                              sim::WorldStore& worlds) {
   WarningLog warnings({});
   std::vector<std::filesystem::path> files = campaign::files_of(campaign);
   files.push_back(os::own_file());
   for (const auto& entry : campaign.scenarios) {
     add_programs(entry, files);
-    const sim::World world = sim::load_world(
+    const sim::World world = worlds.load(
         scenario::world_request(entry.scenario, campaign.seeds.front()), warnings.sink());
     files.insert(files.end(), world.files.begin(), world.files.end());
     try_conditions(entry, world, find_back_end, warnings.sink());

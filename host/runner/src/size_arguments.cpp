@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include <tether/base/error.h>
 #include <tether/scenario/slowness.h>
 
@@ -29,20 +31,27 @@ const scenario::Condition& moved_from(const TrialSpec& spec) {
 
 std::vector<std::string> size_arguments(const TrialSpec& spec,
                                         const scenario::ShippedFiles& shipped) try {
-  if (!spec.scenario.settings.empty() || spec.scenario.has_laid_profile ||
-      !spec.condition.slowed_from.empty() || spec.waits_for_sut)
+  if (!spec.scenario.settings.empty() || spec.scenario.has_laid_profile || spec.waits_for_sut)
     return {};
-  const scenario::Condition* own = spec.scenario.find_condition(spec.condition.name);
+  const bool is_slowed = !spec.condition.slowed_from.empty();
+  const scenario::Condition* own =
+      spec.scenario.find_condition(is_slowed ? spec.condition.slowed_from : spec.condition.name);
   scenario::Condition slower = own != nullptr ? *own : moved_from(spec);
   if (spec.condition.simulator != slower.simulator) return {};
   std::vector<std::string> words = {word_for(spec.scenario.file, shipped), "--condition",
                                     slower.name};
   if (own == nullptr) {
     const auto& target = spec.condition.target;
-    if (!target || target->file.empty() || !slower.computers.empty()) return {};
+    if (is_slowed || !target || target->file.empty() || !slower.computers.empty()) return {};
     scenario::slowness(*target, slower);
     words.insert(words.end(), {"--target", target->file.string()});
   }
+  // The answer may be on either side of what was flown.
+  constexpr double kBeside = 4.0;
+  const double flown = spec.condition.slowdown;
+  if (is_slowed)
+    words.insert(words.end(), {"--between", fmt::format("{:g},{:g}", std::min(1.0, flown / kBeside),
+                                                        std::max(40.0, flown * kBeside))});
   scenario::slow_down(slower, 2.0);
   return words;
 } catch (const Error&) {

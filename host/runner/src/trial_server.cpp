@@ -67,7 +67,8 @@ os::Pipe make_sockets() {
 
 class TrialServers::Server {
  public:
-  Server() : Server(make_sockets()) {}
+  /// @param body of a copy of this process; none: a new process.
+  explicit Server(const std::function<int()>& body = {}) : Server(make_sockets(), body) {}
 
   /// How a trial ended; none: the server has ended before that.
   std::optional<std::string> run(const std::string& request, const std::stop_token& stop) {
@@ -87,12 +88,19 @@ class TrialServers::Server {
 
  private:
   // It notices our end by the socket: it may be started by a thread that ends before this process.
-  explicit Server(os::Pipe sockets)
-      : process_({.arguments = {os::own_file().string(), std::string(kServeTrials)},
-                  .environment = {},
-                  .log = {},
-                  .input_pipe = sockets.read_end.get(),
-                  .death_signal = 0}),
+  // A copy first closes its copies of both ends, or it would not.
+  Server(os::Pipe sockets, const std::function<int()>& body)
+      : process_(
+            {.arguments = body ? std::vector<std::string>{"trials"}
+                               : std::vector{os::own_file().string(), std::string(kServeTrials)},
+             .environment = {},
+             .log = {},
+             .input_pipe = sockets.read_end.get(),
+             .death_signal = 0,
+             .body = body ? [&] {
+               sockets = {};
+               return body();
+             } : body}),
         socket_(std::move(sockets.write_end)) {}
 
   os::ChildProcess process_;
@@ -101,6 +109,12 @@ class TrialServers::Server {
 
 TrialServers::TrialServers() = default;
 TrialServers::~TrialServers() = default;
+
+// A server also holds our ends of the sockets of those before it, which therefore end after it.
+void TrialServers::start(int count, const TrialService& service) {
+  for (int i = 0; i < count; ++i)
+    idle_.push_back(std::make_unique<Server>([&] { return serve_trials(service); }));
+}
 
 std::unique_ptr<TrialServers::Server> TrialServers::take() {
   const std::lock_guard lock(mutex_);

@@ -7,6 +7,7 @@
 #include <tether/os/program.h>
 #include <tether/runner/campaign_trials.h>
 #include <tether/runner/trial_server.h>
+#include <tether/sim_sdf/world_store.h>
 
 namespace tether::runner {
 namespace {
@@ -39,7 +40,8 @@ TEST_F(CampaignTrials, NameEachSimulatorOnce) {
 }
 
 TEST_F(CampaignTrials, DependOnProgramsWorldAndSimulator) {
-  const auto files = files_of_trials(campaign_, fake_back_end()).files;
+  sim::WorldStore worlds;
+  const auto files = files_of_trials(campaign_, fake_back_end(), worlds).files;
   EXPECT_THAT(files, Contains(os::own_file()).Times(1));
   EXPECT_THAT(files, Contains(os::find_program("sh")).Times(1));
   EXPECT_THAT(files, Contains(campaign_.scenarios.front().scenario.file));
@@ -60,8 +62,9 @@ TEST_F(CampaignTrials, SayInTheirArgumentsWhatDiffersFromTheScenarioFile) {
 
 TEST_F(CampaignTrials, RejectAnUnknownSimulator) {
   campaign_.scenarios.front().scenario.conditions.front().simulator = "another";
+  sim::WorldStore worlds;
   const Error error =
-      thrown_error(ErrorCode::kUsage, [&] { files_of_trials(campaign_, fake_back_end()); });
+      thrown_error(ErrorCode::kUsage, [&] { files_of_trials(campaign_, fake_back_end(), worlds); });
   EXPECT_EQ(error.subject(), "another");
 }
 

@@ -35,6 +35,9 @@ TEST(SizeArguments, FlyTheSameScenarioOnASlowerComputer) {
   EXPECT_THAT(place("target, counted on counted_host", "counted_host.toml"),
               ElementsAre("face_anchor", "--condition", "target, counted", "--target", counted));
   EXPECT_THAT(place("counted_host", "counted_host.toml"), IsEmpty());  // the default has a factor
+  slow_down(spec.condition = *spec.scenario.find_condition("host"), 3.0);
+  EXPECT_THAT(size_arguments(spec, scenario::ShippedFiles(kData)),
+              ElementsAre("face_anchor", "--condition", "host", "--between", "0.75,40"));
   const ScratchFolder scratch;
   spec.scenario.file = scratch.write("face_anchor.toml", "");
   EXPECT_THAT(fly("host"), ElementsAre(spec.scenario.file.string(), "--condition", "host"));

@@ -50,8 +50,10 @@ std::string size_command(const ConditionVerdict& condition, bool searches_faster
   if (condition.size_arguments.empty()) return "";
   std::string command = "tether size";
   for (const std::string& word : condition.size_arguments) command += " " + os::shell_word(word);
-  const bool names_target = std::ranges::count(condition.size_arguments, "--target") > 0;
-  if (searches_faster && !names_target) command += " --between 0.1,2";
+  const auto names = [&](const char* option) {
+    return std::ranges::count(condition.size_arguments, option) > 0;
+  };
+  if (searches_faster && !names("--target") && !names("--between")) command += " --between 0.1,2";
   return "`" + command + "`";
 }
 

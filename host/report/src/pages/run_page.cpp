@@ -38,7 +38,8 @@ std::string outcome_text(campaign::Outcome outcome) {
 std::string outcome_sentences(const campaign::TrialResult& trial) {
   std::string text = fmt::format("{}: {}.", outcome_text(trial.outcome), trial.reason);
   for (const campaign::SutResult& sut : trial.suts) {
-    if (!sut.outcome.empty()) text += fmt::format(" SUT of {}: {}.", sut.uav, sut.outcome);
+    if (!sut.outcome.empty())
+      text += fmt::format(" The SUT of {} reports: {}.", sut.uav, sut.outcome);
   }
   return text;
 }
@@ -95,12 +96,11 @@ std::string mission_part(const campaign::TrialResult& trial) {
     if (!drawing.empty())
       html += figure(
           drawing,
-          fmt::format(
-              "Tasks (bars) and clauses (lines) of {}. A line is the time that a "
-              "clause is about, a stroke its deadline, a dot the time when it "
-              "was decided; the thin curve, the margin as it drained, with 0 in the middle of "
-              "the lane; at the right, status and margin.",
-              sut.uav),
+          fmt::format("Tasks (bars) and clauses (lines) of {}. A line is the time that a "
+                      "clause is about, a stroke its deadline, a dot the time when it "
+                      "was decided; the thin curve, the margin over time, with 0 in the middle of "
+                      "the lane; at the right, status and margin.",
+                      sut.uav),
           "plot");
   }
   return html + to_html(table, "Mission");

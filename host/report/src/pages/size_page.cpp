@@ -91,11 +91,12 @@ std::string size_page(const SizeReport& report) {
   FigureMaker figures(1);
   std::string body = element("h1", report.scenario + ": how slow a computer is fast enough?");
   body += answer_block(size_answers(report), size_advice(report));
-  body += figures.plot(
-      size_plot(report),
-      "Each dot is one flight. The line is the share of flights that reach the goal, the band its "
-      "interval. Shaded: the interval of the largest sufficient slowdown. Below: how far each "
-      "metric is within its limit, in shares of the limit.");
+  body += figures.plot(size_plot(report),
+                       "A dot is a flight that reached the goal, a cross one that missed it. The "
+                       "line is the share of "
+                       "flights that reach the goal, the band its interval. Shaded: the interval "
+                       "of the largest sufficient slowdown. Below: how far each "
+                       "metric is within its limit, in shares of the limit.");
   if (!report.boards.empty()) body += to_html(boards_table(report));
   if (const auto& pace = report.pace.pace)
     body += to_html(stages_table(report.synchronised.condition + ", near the limit", *pace));

@@ -116,7 +116,7 @@ void add_flights(Drawing& drawing, const SizedCondition& sized, const std::strin
   const std::string size = is_reference ? "pointsize 0.35" : "pointsize 0.55";
   drawing.add(reached, "with points pointtype 7 " + size, ink,
               is_reference ? "" : "flight, goal reached");
-  drawing.add(missed, "with points pointtype 6 " + size, ink,
+  drawing.add(missed, "with points pointtype 2 linewidth 1.5 " + size, ink,
               is_reference ? "" : "flight, goal missed");
 }
 

@@ -191,12 +191,13 @@ TEST_F(CampaignPage, BeforeTheFirstTrialIsAPage) {
 TEST_F(CampaignPage, OfOneRunShowsItsOutcomeAndPlots) {
   write_records();
   const std::string html = run_page(folder_of("target", 1));
-  expect_in_order(html, {"<h1>turn, target, seed 1</h1>",
-                         "<strong>Fast enough in this flight</strong>: on “target”",
-                         "Goal reached: every SUT reached its goal within the limits. SUT of uav1: "
-                         "the anchor is in the middle.",
-                         "Time required (s)", "<h2>Contacts</h2>", "&lt;wall&gt;", "2.930", "3.800",
-                         "<h2>Camera images</h2>"});
+  expect_in_order(
+      html,
+      {"<h1>turn, target, seed 1</h1>", "<strong>Fast enough in this flight</strong>: on “target”",
+       "Goal reached: every SUT reached its goal within the limits. The SUT of uav1 "
+       "reports: the anchor is in the middle.",
+       "Time required (s)", "<h2>Contacts</h2>", "&lt;wall&gt;", "2.930", "3.800",
+       "<h2>Camera images</h2>"});
   check_page(html, 13);  // flight, timeline twice, lag, path, four images, four of depths
 }
 

@@ -14,6 +14,7 @@ using testing::Not;
 TEST(SizePlot, HasEachFlightTheThresholdAndTheBoards) {
   const std::string script = size_plot(sample_size()).script;
   EXPECT_THAT(script, HasSubstr("flight, goal reached"));
+  EXPECT_THAT(script, HasSubstr("pointtype 2 linewidth 1.5 pointsize 0.55"));  // missed
   EXPECT_THAT(script, HasSubstr("rectangle from 2.7,graph 0 to 3.6,graph 1"));
   EXPECT_THAT(script, HasSubstr("arrow from 3.1,graph 0"));
   EXPECT_THAT(script, HasSubstr("rectangle from 1.7,graph 0 to 2.1,graph 1"));

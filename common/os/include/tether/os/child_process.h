@@ -30,9 +30,10 @@ struct ChildCommand {
   int death_signal = SIGKILL;                ///< sent to it when this process ends
   Duration grace = std::chrono::seconds(1);  ///< from `end_signal` to SIGKILL
   /// If set, the child is a copy of this process that calls this and exits with what it returns,
-  /// rather than a program. It has the memory of this process, but only the thread that starts it:
-  /// a process with other threads must not start such a child. `arguments` has one word, the name
-  /// that `ps` shows; `environment`, `cpus` and `working_folder` stay those of this process.
+  /// rather than a program. It has the memory and the open files of this process, but only the
+  /// thread that starts it: a process with other threads than that of an Interrupt must not start
+  /// such a child. `arguments` has one word, the name that `ps` shows; `environment`, `cpus` and
+  /// `working_folder` stay those of this process.
   std::function<int()> body{};
 };
 

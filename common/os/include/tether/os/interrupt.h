@@ -1,5 +1,7 @@
 #pragma once
 
+#include <chrono>
+#include <optional>
 #include <stop_token>
 #include <thread>
 
@@ -22,12 +24,28 @@ class Interrupt {
 
   std::stop_token token() const { return stop_.get_token(); }
 
+  /// Without its thread while this lives: a copy of a process with several threads may do little.
+  /// Signals that arrive meanwhile are taken afterwards. Does nothing if there is no Interrupt.
+  class Pause {
+   public:
+    Pause();
+    ~Pause();
+    Pause(const Pause&) = delete;
+    Pause& operator=(const Pause&) = delete;
+
+   private:
+    Interrupt* paused_;
+  };
+
  private:
+  void start();
+  void end_thread();
   void watch();
 
   Pipe signals_;  // a byte for each
   bool ignores_hangup_ = false;
   std::stop_source stop_;
+  std::optional<std::chrono::steady_clock::time_point> first_;  // signal
   std::thread watcher_;
 };
 

@@ -9,6 +9,10 @@
 #include <tether/runner/back_end.h>
 #include <tether/scenario/campaign.h>
 
+namespace tether::sim {
+class WorldStore;
+}
+
 /// The files that the trials of a campaign depend on.
 namespace tether::runner {
 
@@ -21,10 +25,10 @@ struct CampaignFiles {
   std::vector<Warning> warnings;
 };
 /// All files that the result of a trial depends on. Reads each of them, so that errors in them are
-/// found before anything is written.
+/// found before anything is written, and keeps the worlds in `worlds`.
 /// @throws Error(kBadFile) with the file; Error(kUsage) for an unknown simulator; Error(kSetup) if
-/// a
-///   file of a simulator is missing.
-CampaignFiles files_of_trials(const scenario::Campaign& campaign, const FindBackEnd& find_back_end);
+///   a file of a simulator is missing.
+CampaignFiles files_of_trials(const scenario::Campaign& campaign, const FindBackEnd& find_back_end,
+                              sim::WorldStore& worlds);
 
 }  // namespace tether::runner

@@ -13,11 +13,22 @@
 #include <tether/campaign/run_campaign.h>
 
 /// Trials in processes of their own that do not read their world again: a server, which is a
-/// process of this program, reads it once, and each trial is a copy of the server.
+/// process of this program, has it in memory, and each trial is a copy of the server.
 namespace tether::runner {
 
 /// As its only argument, makes this program a server of trials.
 inline constexpr std::string_view kServeTrials = "--serve-trials";
+
+/// What a server does with the arguments of `tether run`.
+struct TrialService {
+  /// Reads what the trial needs into memory. Its failures are left to `run`.
+  std::function<void(const std::vector<std::string>& arguments)> prepare;
+  /// Runs the trial, in a copy of the server. @return the exit code.
+  std::function<int(const std::vector<std::string>& arguments)> run;
+};
+/// Serves the process that started this one until it ends. @pre this process has one thread.
+/// @return the exit code.
+int serve_trials(const TrialService& service);
 
 /// Runs trials, each by a server that does nothing else meanwhile. A failure of a trial cannot
 /// affect others. Thread-safe.
@@ -26,6 +37,9 @@ class TrialServers {
   TrialServers();
   ~TrialServers();
 
+  /// Starts so many servers as copies of this process, which have in memory what it has read. A
+  /// server that is needed besides is a new process. @pre as for a body of os::ChildCommand.
+  void start(int count, const TrialService& service);
   /// Does what `tether run` would with these arguments, which leaves its result and log in
   /// `folder`. None: a stop request ended it. @throws Error(kSetup) if it leaves no result.
   std::optional<campaign::TrialResult> run(const std::vector<std::string>& of_run,
@@ -44,16 +58,5 @@ class TrialServers {
 
 /// The arguments of `tether run` for a trial, without --out.
 std::vector<std::string> trial_arguments(const campaign::TrialPlan& plan);
-
-/// What a server does with the arguments of `tether run`.
-struct TrialService {
-  /// Reads what the trial needs into memory. Its failures are left to `run`.
-  std::function<void(const std::vector<std::string>& arguments)> prepare;
-  /// Runs the trial, in a copy of the server. @return the exit code.
-  std::function<int(const std::vector<std::string>& arguments)> run;
-};
-/// Serves the process that started this one until it ends. @pre this process has one thread.
-/// @return the exit code.
-int serve_trials(const TrialService& service);
 
 }  // namespace tether::runner
