@@ -106,8 +106,6 @@ function(_tether_register_test target name)
     set(ARG_COST 0)
   endif()
   target_precompile_headers(${target} REUSE_FROM tether_test_headers)
-  # Small enough that two cores share one program.
-  set_target_properties(${target} PROPERTIES UNITY_BUILD_BATCH_SIZE 8)
   if("unit" IN_LIST ARG_LABELS)
     add_dependencies(tether_unit_tests ${target})
     set(level unit)
