@@ -81,6 +81,8 @@ endforeach()
 # code is compiled as theirs is; and only what they test is optimised.
 add_library(tether_test_options INTERFACE)
 target_compile_options(tether_test_options INTERFACE $<$<CONFIG:RelWithDebInfo>:-Og> $<$<CONFIG:Debug>:-O0>
+  # Fuzzing follows what an input reaches in the product, and no unit test is part of it.
+  $<$<CXX_COMPILER_ID:Clang>:-fno-sanitize=fuzzer-no-link>
   # Optimised that little, the standard library's own code sets this one off.
   $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
 target_link_libraries(tether_test_options INTERFACE tether_compile_options)
