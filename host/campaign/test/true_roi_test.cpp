@@ -163,7 +163,7 @@ TEST(RoiBearing, IsTheHorizontalAngleOfAPitchedCamera) {
 
 // ---- pose_at
 
-record::Record flight() {
+record::Record turning_flight() {
   Flight flight;
   flight.pose(10, 1.0, 0.0, 170.0).pose(12, 50.0, 0.0, 0.0).pose(20, 2.0, 0.0, -170.0);
   flight.pose(30, 2.0, 0.0, -90.0);
@@ -177,7 +177,7 @@ std::optional<uav::Pose> pose_at_ms(const record::Record& record, double ms) {
 }
 
 TEST(PoseAt, IsInterpolatedTheShortWayRound) {
-  record::Record record = flight();
+  record::Record record = turning_flight();
   const auto pose = pose_at_ms(record, 12.5);
   ASSERT_TRUE(pose);
   EXPECT_NEAR(pose->p.x, 1.25, 1e-12);
@@ -191,18 +191,18 @@ TEST(PoseAt, IsInterpolatedTheShortWayRound) {
 }
 
 TEST(PoseAt, OfAStationaryUavIsThatPose) {
-  record::Record record = flight();
+  record::Record record = turning_flight();
   record.ground_truth.push_back(record.ground_truth.back());
   record.ground_truth.back().message.at += milliseconds(10);
   EXPECT_NEAR(uav::yaw_rad(pose_at_ms(record, 33)->q), rad_from_deg(-90.0), 1e-12);
 }
 
 TEST(PoseAt, IsNoneFurtherThanAPeriodFromGroundTruth) {
-  EXPECT_EQ(pose_at_ms(flight(), 0)->p.x, 1.0);
-  EXPECT_EQ(pose_at_ms(flight(), 40)->p.x, 2.0);
-  EXPECT_FALSE(pose_at_ms(flight(), -0.001));
-  EXPECT_FALSE(pose_at_ms(flight(), 40.001));
-  EXPECT_FALSE(pose_at(flight(), "uav3", SimTime(milliseconds(20))));
+  EXPECT_EQ(pose_at_ms(turning_flight(), 0)->p.x, 1.0);
+  EXPECT_EQ(pose_at_ms(turning_flight(), 40)->p.x, 2.0);
+  EXPECT_FALSE(pose_at_ms(turning_flight(), -0.001));
+  EXPECT_FALSE(pose_at_ms(turning_flight(), 40.001));
+  EXPECT_FALSE(pose_at(turning_flight(), "uav3", SimTime(milliseconds(20))));
   EXPECT_FALSE(pose_at_ms({}, 0));
 }
 

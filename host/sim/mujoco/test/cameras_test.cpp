@@ -29,7 +29,7 @@ constexpr int kHeight = 240;
 constexpr double kWall_m = 5.0;
 
 // A world that shows colours unchanged.
-World flat_world() {
+World seen_world() {
   World world;
   world.ambient_rgb = {1.0, 1.0, 1.0};
   world.background_rgb = {0.0, 0.0, 0.0};
@@ -47,7 +47,7 @@ CameraModel& camera_of(World& world) {
 // Ahead, black from y = 0 to the left and white to the right: one upright edge. It is seen aslant,
 // so that in a band of rows it lies anywhere within a pixel: a renderer's pixel is one point.
 World edge_world() {
-  World world = flat_world();
+  World world = seen_world();
   world.models.push_back(
       box_model("right", {kWall_m + 0.5, -20.0, 0.0}, {1.0, 40.0, 40.0}, {1.0, 1.0, 1.0}));
   world.uavs[0].sensors[kCamera].X_BS.q = uav::from_rpy(0.1, 0.0, 0.0);

@@ -13,7 +13,6 @@
 #include <tether/base_testing/golden.h>
 #include <tether/sim/bodies.h>
 #include <tether/sim_raster/renderer.h>
-#include <tether/sim_sdf/load_world.h>
 
 // Pictures of the shipped worlds: the first one of each shipped scenario's camera, and some more.
 namespace tether::sim {
@@ -38,14 +37,6 @@ constexpr Viewpoint kViewpoints[] = {
     {"corridor_back", "corridor.sdf", {9.0, 0.5, 1.5}, 180.0},
     {"corridor_floor", "corridor.sdf", {4.0, 0.0, 1.5}, 30.0, 60.0},
 };
-
-World load(const std::string& name) {
-  const std::filesystem::path root = TETHER_SOURCE_DIR;
-  WorldRequest request;
-  request.world = root / "data/worlds" / name;
-  request.uavs = {{"alpha", root / "data/models/hummingbird/model.sdf", {1.2, 0.0, 1.2}, 0.3}};
-  return load_world(request, testing::no_warnings());
-}
 
 std::uint64_t hash_of(std::span<const std::uint8_t> bytes) {
   std::uint64_t hash = 14695981039346656037ULL;
@@ -88,7 +79,7 @@ std::uint64_t drawn_hash(raster::Renderer& renderer, const std::vector<uav::Pose
 TEST(GoldenPictures, ShippedWorldsLookTheSameOnEveryMachine) {
   GoldenHashes hashes;
   for (const char* name : {"room.sdf", "corridor.sdf"}) {
-    const World world = load(name);
+    const World world = testing::shipped_world(name);
     const raster::Scene scene(make_scene(world, testing::no_warnings()));
     std::vector<uav::Pose> bodies;
     for (const MovingBody& body : moving_bodies(world)) bodies.push_back(body.X_WB);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include <tether/sim/simulator.h>
 #include <tether/sim_testing/test_worlds.h>
@@ -11,5 +12,8 @@ namespace tether::sim::testing {
 WarningSink no_warnings();
 
 std::unique_ptr<Simulator> make_simulator(World world);
+
+/// data/worlds/<name> with one UAV, "alpha", and the anchor "blue_box".
+World shipped_world(const std::string& name);
 
 }  // namespace tether::sim::testing

@@ -1,13 +1,11 @@
 #include "test_simulator.h"
 
-#include <filesystem>
 #include <set>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <tether/sim_mujoco/mujoco_simulator.h>
-#include <tether/sim_sdf/load_world.h>
 
 // The worlds that come with Tether, through the whole back end.
 namespace tether::sim {
@@ -15,17 +13,8 @@ namespace {
 
 class WorldsTest : public ::testing::TestWithParam<const char*> {};
 
-World load(const std::string& name) {
-  const std::filesystem::path root = TETHER_SOURCE_DIR;
-  WorldRequest request;
-  request.world = root / "data/worlds" / name;
-  request.uavs = {{"alpha", root / "data/models/hummingbird/model.sdf", {1.2, 0.0, 1.2}, 0.3}};
-  request.anchors = {"blue_box"};
-  return load_world(request, testing::no_warnings());
-}
-
 TEST_P(WorldsTest, FliesAndSees) {
-  const auto simulator = testing::make_simulator(load(GetParam()));
+  const auto simulator = testing::make_simulator(testing::shipped_world(GetParam()));
   simulator->advance_to(SimTime(std::chrono::seconds(1)));
   EXPECT_LT(norm(simulator->ground_truth(0).body.p_WB - uav::Vec3{1.2, 0.0, 1.2}), 1e-3);
   const auto& sensors = simulator->world().uavs[0].sensors;
