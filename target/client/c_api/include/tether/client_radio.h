@@ -10,9 +10,9 @@ extern "C" {
 
 /// @defgroup c_radio Radio
 /// @ingroup c_api
-/// Messages between the programs of the UAVs. Whether and when one arrives is up to the scenario's
-/// radio. Messages arrive in the order of time; those of one instant in
-/// the order of UAVs in the scenario, and of one UAV in the order in which it sent them.
+/// Messages between the programs of the UAVs. The scenario's radio determines whether and when a
+/// message arrives. Messages arrive in the order of time; those of one instant in the order of UAVs
+/// in the scenario, and those of one UAV in the order in which it sent them.
 /// @{
 
 /// Number of the other UAVs. @param vehicle  the UAV  @return the number; 0 if `vehicle` is NULL
@@ -25,9 +25,8 @@ const char* tether_peer_at(const tether_vehicle* vehicle, size_t index) TETHER_N
 /// Sends a message. An @ref interaction that returns at the same ET.
 /// @param vehicle  the UAV  @param to  name of another UAV, or NULL: all others
 /// @param bytes  the message; may be NULL if `size` is 0  @param size  0 to 65536 [bytes]
-/// @return TETHER_OK, also if it will be lost, or an @ref interaction error; TETHER_INVALID if
-/// there
-///   is no such UAV or no other one, or if the message is too long
+/// @return TETHER_OK, also if it will be lost, or an @ref interaction error; TETHER_INVALID
+///   if there is no such UAV or no other one, or if the message is too long
 tether_status tether_send(tether_vehicle* vehicle, const char* to, const void* bytes,
                           size_t size) TETHER_NOEXCEPT;
 
