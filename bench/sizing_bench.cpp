@@ -13,7 +13,7 @@
 // Simulated experiments of `tether size` with known curves: how often the interval covers the
 // truth, and how many flights it takes, beside a fixed grid of slowdowns with the same statistics.
 // The truth is what the answer is about: the slowdown up to which the share of success in each
-// neighbourhood is the wanted one. Prints the table of docs/guide/size.md:
+// neighbourhood is the wanted one. Prints the table of docs/adr/0057:
 //   sizing_bench [EXPERIMENTS PER KIND] [KIND]
 namespace {
 

@@ -29,23 +29,34 @@ constexpr const char* kDescription =
     "or "
     "with real sensors (--rig, --camera DEVICE, ...).";
 
-constexpr const char* kExamples = R"(
-Examples:
-  tether run face_anchor --target wait      # prints the environment that the tasks below need
-  tether-sut face_anchor --anchor blue_box
-  tether-sut face_anchor --anchor blue_box --precision-deg 1 --yaw-rate-deg-s 30
-  tether-sut relative_position --anchor blue_box --address 192.168.1.10:4810
-  tether-sut move_forward --anchor blue_box --speed-m-s 0.3
-  TETHER_CLOCK='cpu*20' tether-sut closed_path --anchor blue_box --distance-m 1
-  tether-sut sensor_characterization --sensor camera --acquisitions 100
-  tether-sut mission /usr/share/tether/missions/look_around.toml
-  tether-sut relative_position --anchor blue_box --rig /usr/share/tether/rigs/bench.toml \
-    --camera /dev/video0
-  tether-sut characterize --camera /dev/video0 --range iio:vl53l0x --out bench.toml
-  tether-sut calibrate --out board.toml
-  tether-sut calibrate --against board.toml --write-target my_board.toml
-  tether-sut calibrate --against board.toml --counted --write-target my_board.toml
+constexpr const char* kFirstExample =
+    "  tether run face_anchor --target wait      # prints the environment that tasks need\n";
 
+struct Example {
+  std::string_view command;
+  const char* text;
+};
+constexpr Example kExamples[] = {
+    {"face_anchor", "--anchor blue_box"},
+    {"face_anchor", "--anchor blue_box --precision-deg 1 --yaw-rate-deg-s 30"},
+    {"relative_position", "--anchor blue_box --address 192.168.1.10:4810"},
+    {"relative_position", "--anchor blue_box --rig bench.toml --camera /dev/video0"},
+    {"move_forward", "--anchor blue_box --speed-m-s 0.3"},
+    {"closed_path", "--anchor blue_box --distance-m 1 --clock 'cpu*20'"},
+    {"sensor_characterization", "--sensor camera --acquisitions 100"},
+    {"go_to", "--ahead-m 2 --up-m 0.5"},
+    {"search", "--anchor blue_box"},
+    {"hold", "--duration-s 5"},
+    {"inspect", "--anchor blue_box --distance-m 1.5 --duration-s 10"},
+    {"land", "--speed-m-s 0.3"},
+    {"search_pair", "--anchor blue_box"},
+    {"mission", "look_around.toml"},
+    {"characterize", "--camera /dev/video0 --range iio:vl53l0x --out bench.toml"},
+    {"calibrate", "--out board.toml"},
+    {"calibrate", "--against board.toml --write-target my_board.toml"},
+    {"calibrate", "--against board.toml --counted --write-target my_board.toml"}};
+
+constexpr const char* kEnvironment = R"(
 Environment (`tether run` sets it for the SUTs that it starts):
   TETHER_ADDRESS  address of the coordinator, host:port
   TETHER_TOKEN    token of the run, as printed by the coordinator
@@ -55,18 +66,36 @@ Environment (`tether run` sets it for the SUTs that it starts):
 
 Exit codes: 0 goal reached, 1 goal missed, 2 wrong use or a bad file, 3 set-up or connection failed.)";
 
+/// The end of the help of a command; of the program if it is empty.
+std::string footer_of(std::string_view command) {
+  std::string text = "Examples:\n";
+  if (command.empty()) text += kFirstExample;
+  for (const Example& example : kExamples)
+    if (command.empty() || command == example.command)
+      text += "  tether-sut " + std::string(example.command) + " " + example.text + "\n";
+  return text + kEnvironment;
+}
+
 // Kinds of values ---------------------------------------------------------------------------------
 
-/// Like CLI::Range, which lets NaN through.
+/// A number for people: 25, not 25.000000000000004.
+std::string shown(double value) {
+  std::ostringstream text;
+  text.precision(15);
+  text << std::round(value * 1e9) / 1e9;
+  return text.str();
+}
+
+/// Like CLI::Range, but rejects NaN, and shows the limits as they are written.
 CLI::Validator within(double least, double most) {
-  const CLI::Range range(least, most);
+  const std::string range = shown(least) + " to " + shown(most);
   return CLI::Validator(
-      [range](std::string& text) {
+      [=](const std::string& text) -> std::string {
         double value = 0.0;
-        const bool is_nan = CLI::detail::lexical_cast(text, value) && std::isnan(value);
-        return is_nan ? std::string("nan is not a number") : range(text);
+        if (CLI::detail::lexical_cast(text, value) && value >= least && value <= most) return {};
+        return "must be a number from " + range + ", but is '" + text + "'";
       },
-      range.get_description());
+      range);
 }
 
 CLI::Validator odd() {
@@ -76,11 +105,6 @@ CLI::Validator odd() {
         return is_odd ? std::string() : text + " is not odd";
       },
       "odd");
-}
-
-/// A default value: 25, not 25.000000000000004.
-std::string shown(double value) {
-  return CLI::detail::to_string(std::round(value * 1e9) / 1e9);
 }
 
 constexpr const char* kDevices =
@@ -156,7 +180,7 @@ class OptionOf {
   }
   void operator()(const rig::IntegerField& field) const {
     CLI::Option* option = app_.add_option(name_, *field.value, description_)
-                              ->check(CLI::Range(field.least, field.most))
+                              ->check(within(field.least, field.most))
                               ->capture_default_str();
     if (field.is_odd) option->check(odd());
   }
@@ -198,10 +222,10 @@ void add_characterize_options(CLI::App& app, calibration::CharacterizeOptions& o
       ->delimiter(',')
       ->type_name("NAME,NAME");
   app.add_option("--acquisitions", options.acquisitions, "Acquisitions per experiment")
-      ->check(CLI::Range(1, calibration::kMostAcquisitions))
+      ->check(within(1, calibration::kMostAcquisitions))
       ->capture_default_str();
   app.add_option("--experiments", options.experiments, "Experiments per sensor; ten in the paper")
-      ->check(CLI::Range(1, calibration::kMostAcquisitions))
+      ->check(within(1, calibration::kMostAcquisitions))
       ->capture_default_str();
   app.add_option(
          "--timing", options.timing,
@@ -230,11 +254,11 @@ void add_calibrate_options(CLI::App& app, calibration::CalibrateOptions& options
     app.add_option(name, file, description)->check(file_name())->type_name("FILE");
   };
   app.add_option("--rounds", options.rounds, "Measured rounds, after three warm-up rounds")
-      ->check(CLI::Range(calibration::kLeastRounds, 100'000))
+      ->check(within(calibration::kLeastRounds, 100'000))
       ->capture_default_str();
   app.add_option("--cpu", options.cpu_index,
                  "CPU core to measure on, from 0 [the last one that is allowed]")
-      ->check(CLI::Range(0, 100'000))
+      ->check(within(0, 100'000))
       ->type_name("N");
   add_file("--out", options.out, "File for the measurements (TOML)");
   add_file("--against", options.against,
@@ -322,7 +346,7 @@ CLI::App* add_subcommand(CLI::App& app, std::string_view name, std::string_view 
   define(*command);
   add_link_options(*command, words.line);
   add_device_options(*command, words.devices);
-  command->footer(kExamples);
+  command->footer(footer_of(name));
   return command;
 }
 
@@ -367,7 +391,7 @@ void define_subcommands(CLI::App& app, Words& words) {
   CLI::App* calibrate = app.add_subcommand(
       "calibrate", "Measure how fast this machine is; with --against, relative to another machine");
   add_calibrate_options(*calibrate, words.calibrate);
-  calibrate->footer(kExamples);
+  calibrate->footer(footer_of("calibrate"));
 }
 
 /// Takes the selected command, and checks its options.
@@ -427,7 +451,7 @@ std::variant<CommandLine, Refusal> parse_command_line(int argc, const char* cons
   Words words;
   CLI::App app(kDescription, "tether-sut");
   app.set_version_flag("--version", "tether-sut " + std::string(version()));
-  app.footer(kExamples);
+  app.footer(footer_of(""));
   app.require_subcommand(1);
   define_subcommands(app, words);
   try {

@@ -26,7 +26,7 @@ std::string how_to_continue(const workers::Start& start, const std::string& out)
 
 bool is_asked_to_cancel() {
   if (::isatty(STDIN_FILENO) == 0 || os::terminal_columns(STDERR_FILENO) == 0) return false;
-  say("\nCancel the jobs? Otherwise they go on. [y/N] ");
+  say("\nCancel the jobs? Otherwise they continue. [y/N] ");
   std::string answer;
   std::getline(std::cin, answer);
   return answer == "y" || answer == "Y" || answer == "yes";
@@ -46,7 +46,8 @@ void end_or_leave(const workers::Cluster& cluster, workers::CollectEnd end,
     if (end == workers::CollectEnd::kCancelled)
       say("tether: the jobs were cancelled. {}\n", next);
     else
-      say("tether: the jobs go on. {}\nTo cancel them: tether campaign --cancel {}\n", next, out);
+      say("tether: the jobs continue. {}\nTo cancel them: tether campaign --cancel {}\n", next,
+          out);
   }
 }
 

@@ -74,9 +74,7 @@ workers::Flight fly(runner::TrialServers& servers, const workers::Item& item, co
   try {
     auto result = servers.run(item.arguments, local, stop);
     if (!result)
-      return {End::kStopped,
-              "the worker was told to end (cancelled, preempted, or over "
-              "its time limit)"};
+      return {End::kStopped, "the worker was ended (cancelled, preempted, or over its time limit)"};
     if (result->end == campaign::kEndSetupFailed) return {End::kLost, result->reason};
     result->this_run.node = node;
     result->this_run.attempts = static_cast<int>(item.losses.size()) + 1;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
+#include <string>
 
 #include <fmt/format.h>
 
@@ -28,8 +30,11 @@ int list_shipped(const ListOptions&, const std::stop_token&) {
     std::size_t width = 0;
     for (const ShippedFile& file : files) width = std::max(width, file.name.size());
     fmt::print("{}{}s\n", gap, scenario::to_text(kind));
-    for (const ShippedFile& file : files)
-      fmt::print("  {:<{}}  {}\n", file.name, width, file.description);
+    for (const ShippedFile& file : files) {
+      std::string text = file.description;
+      if (!text.empty()) text.front() = static_cast<char>(std::toupper(text.front()));
+      fmt::print("  {:<{}}  {}\n", file.name, width, text);
+    }
     gap = "\n";
   }
   fmt::print("\nThe files are in {}. Copy one to change it.\n", shipped.folder().string());

@@ -42,7 +42,7 @@ bool is_run(const std::filesystem::path& folder) {
 void require_result(const std::filesystem::path& folder) {
   std::error_code failed;
   const bool is_folder = std::filesystem::is_directory(folder, failed);
-  if (failed) refuse(folder, failed.message());
+  if (failed) refuse(folder, failed.message() + ". Give the folder of a run or a campaign.");
   if (!is_folder) {
     require_kind(folder, FileKind::kRun);
     refuse(folder, "is not a folder. Give the folder of a run or a campaign.");
@@ -140,7 +140,7 @@ void print_campaign_summary(const std::filesystem::path& folder) {
       "Records and results: {0}\n"
       "Next steps:\n"
       "  tether report {0} --format html   one page with tables and plots\n"
-      "  tether report {0}   only the tables\n"
+      "  tether report {0}                 only the tables\n"
       "  tether audit {0}/SCENARIO/CONDITION/seed-NNNN/record.mcap\n"
       "  open a record.mcap in Foxglove (log time is simulated time)\n",
       folder.string());

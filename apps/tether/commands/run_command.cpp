@@ -13,6 +13,8 @@
 #include <cctype>
 #include <filesystem>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -129,42 +131,89 @@ runner::TrialSpec make_spec(const RunOptions& options) {
   return spec;
 }
 
-void print_contacts(const campaign::UavContacts& own) {
+/// The lines below the outcome: a label and a text.
+using Rows = std::vector<std::pair<std::string, std::string>>;
+
+void print(const Rows& rows) {
+  std::size_t width = 0;
+  for (const auto& [label, text] : rows) width = std::max(width, label.size());
+  for (const auto& [label, text] : rows) fmt::print("  {:<{}}  {}\n", label, width, text);
+}
+
+std::string text_of(const campaign::MetricValue& metric, const std::string& reason) {
+  const std::string unit = metric.unit == "1" ? "" : " " + metric.unit;
+  const std::string value = metric.value ? fmt::format("{:.4g}{}", *metric.value, unit)
+                            : metric.missing_because == reason ? "none"
+                                                               : "none: " + metric.missing_because;
+  return value + (metric.max   ? fmt::format("  (limit {:.4g})", *metric.max)
+                  : metric.min ? fmt::format("  (at least {:.4g})", *metric.min)
+                               : "");
+}
+
+std::string text_of(const campaign::UavContacts& own) {
   std::string text = own.count ? fmt::format("{} contact{}", *own.count, *own.count == 1 ? "" : "s")
                                : "contacts not reported";
   if (const auto& hardest = own.hardest)
     text += fmt::format(", the hardest with '{}' at ST {:.6g} s and {:.3g} m/s", hardest->with,
                         to_seconds(hardest->at), hardest->speed_m_s);
   if (const auto& nearest = own.nearest)
-    text += fmt::format("; nearest to '{}' at ST {:.6g} s: {:.3g} m", nearest->to,
-                        to_seconds(nearest->at), nearest->min_m);
-  fmt::print("  {:<24} {}\n", own.uav, text);
+    text += fmt::format("; least clearance {:.3g} m, to '{}' at ST {:.6g} s", nearest->min_m,
+                        nearest->to, to_seconds(nearest->at));
+  return text;
 }
 
-void print_energy(const campaign::UavEnergy& energy) {
+std::string energy_text(const campaign::UavEnergy& energy) {
   std::string causes;
   for (std::size_t i = 0; i < energy::kCauses; ++i)
     causes += fmt::format("{}{} {:.4g} J", i == 0 ? "" : ", ",
                           energy::name(static_cast<energy::Cause>(i)), energy.spent_J[i]);
-  const auto more = energy.more_flights();
-  fmt::print("  {:<24} {:.5g} J: {}\n", "energy of " + energy.uav,
-             campaign::total_J(energy.spent_J), causes);
-  fmt::print("  {:<24} {:.1f} % left of {:.1f} %{}; at least {:.4g} V\n", "charge of " + energy.uav,
-             100.0 * energy.charge_to, 100.0 * energy.charge_from,
-             more ? fmt::format(", enough for {:.1f} more such flights", *more) : "",
-             energy.least_voltage_V);
+  return fmt::format("{:.5g} J: {}", campaign::total_J(energy.spent_J), causes);
 }
 
-void print_clause(const judge::ClauseVerdict& clause, bool is_evaluated) {
-  if (!is_evaluated) return fmt::print("  {:<24} not evaluated\n", clause.name);
+std::string charge_text(const campaign::UavEnergy& energy) {
+  const auto more = energy.more_flights();
+  return fmt::format("{:.1f} % left of {:.1f} %{}; at least {:.4g} V", 100.0 * energy.charge_to,
+                     100.0 * energy.charge_from,
+                     more ? fmt::format(", enough for {:.1f} more such flights", *more) : "",
+                     energy.least_voltage_V);
+}
+
+std::string text_of(const judge::ClauseVerdict& clause, bool is_evaluated) {
+  if (!is_evaluated) return "not evaluated";
   const std::string margin =
       clause.margin ? fmt::format(", margin {:.4g} {}", *clause.margin, clause.unit) : "";
-  const std::string reason = clause.limited_by.empty() ? "" : "; " + clause.limited_by;
-  fmt::print("  {:<24} {}{}{}{}\n", clause.name, clause.met ? "met" : "MISSED", margin,
-             clause.decided_at
-                 ? fmt::format(", decided at ST {:.3f} s", to_seconds(*clause.decided_at))
-                 : "",
-             reason);
+  return fmt::format("{}{}{}{}", clause.met ? "met" : "MISSED", margin,
+                     clause.decided_at
+                         ? fmt::format(", decided at ST {:.3f} s", to_seconds(*clause.decided_at))
+                         : "",
+                     clause.limited_by.empty() ? "" : "; " + clause.limited_by);
+}
+
+/// How the run was flown: simulator, clock, machine, sensors.
+void add_circumstances(Rows& rows, const campaign::TrialResult& result) {
+  rows.emplace_back("simulated",
+                    fmt::format("{:.3f} s in {:.3f} s of wall time, {} interactions",
+                                to_seconds(result.sync.st_at_end), to_seconds(result.this_run.wall),
+                                result.sync.interactions));
+  if (result.clock == scenario::name(scenario::Clock::kUnstamped))
+    rows.emplace_back("clock",
+                      "unstamped: the coordinator measured the SUT's time, which includes the "
+                      "link's");
+  if (!result.emulator.program.empty())
+    rows.emplace_back("clock", fmt::format("counted by {}, CPU model {}", result.emulator.program,
+                                           result.emulator.cpu_model));
+  if (result.replay) rows.emplace_back("time", campaign::describe_replay(result));
+  if (!result.target.empty()) rows.emplace_back("target", result.target);
+  if (const auto& stops = result.sync.stops)
+    rows.emplace_back("stops of all threads",
+                      fmt::format("{}, at most {:.3f} ms late", stops->count,
+                                  1e3 * to_seconds(stops->largest_overshoot)));
+  if (!result.profiles.empty())
+    rows.emplace_back("profiles", fmt::format("{}", fmt::join(result.profiles, ", ")));
+  if (const auto simulator = result.versions.find("simulator"); simulator != result.versions.end())
+    rows.emplace_back("simulator", simulator->second);
+  for (const Warning& warning : result.warnings)
+    if (warning.consequence == Consequence::kMissing) rows.emplace_back("missing", warning.subject);
 }
 
 void print_result(const runner::TrialSpec& spec, const campaign::TrialResult& result) {
@@ -174,46 +223,22 @@ void print_result(const runner::TrialSpec& spec, const campaign::TrialResult& re
   const bool has_failed = result.outcome == campaign::Outcome::kFailed;  // its reason is an error
   fmt::print("{} under \"{}\", seed {}: {}{}\n", result.scenario, result.condition, result.seed,
              campaign::name(result.outcome), has_failed ? "" : ": " + result.reason);
-  for (const auto& metric : result.metrics) {
-    const std::string value =
-        metric.value
-            ? fmt::format("{:.4g} {}", *metric.value, metric.unit == "1" ? "" : metric.unit)
-        : metric.missing_because == result.reason ? "none"
-                                                  : "none: " + metric.missing_because;
-    fmt::print("  {:<24} {}{}\n", metric.label, value,
-               metric.max   ? fmt::format("  (limit {:.4g})", *metric.max)
-               : metric.min ? fmt::format("  (at least {:.4g})", *metric.min)
-                            : "");
+  Rows rows;
+  for (const auto& metric : result.metrics)
+    rows.emplace_back(metric.label, text_of(metric, result.reason));
+  for (const auto& clause : result.clauses)
+    rows.emplace_back(clause.name, text_of(clause, !has_failed));
+  for (const campaign::UavEnergy& energy : result.energy) {
+    rows.emplace_back("energy of " + energy.uav, energy_text(energy));
+    rows.emplace_back("charge of " + energy.uav, charge_text(energy));
   }
-  for (const auto& clause : result.clauses) print_clause(clause, !has_failed);
-  for (const campaign::UavEnergy& energy : result.energy) print_energy(energy);
-  for (const campaign::UavContacts& own : result.contacts) print_contacts(own);
-  fmt::print("  {:<24} {:.3f} s in {:.3f} s of wall time, {} interactions\n", "simulated",
-             to_seconds(result.sync.st_at_end), to_seconds(result.this_run.wall),
-             result.sync.interactions);
-  if (result.clock == scenario::name(scenario::Clock::kUnstamped))
-    fmt::print("  {:<24} {}\n", "clock",
-               "unstamped: the coordinator measured the SUT's time, which includes the link's");
-  if (!result.emulator.program.empty())
-    fmt::print("  {:<24} counted by {}, CPU model {}\n", "clock", result.emulator.program,
-               result.emulator.cpu_model);
-  if (result.replay) fmt::print("  {:<24} {}\n", "time", campaign::describe_replay(result));
-  if (!result.target.empty()) fmt::print("  {:<24} {}\n", "target", result.target);
-  if (const auto& stops = result.sync.stops)
-    fmt::print("  {:<24} {}, at most {:.3f} ms late\n", "stops of all threads", stops->count,
-               1e3 * to_seconds(stops->largest_overshoot));
-  if (!result.profiles.empty())
-    fmt::print("  {:<24} {}\n", "profiles", fmt::join(result.profiles, ", "));
-  if (const auto simulator = result.versions.find("simulator"); simulator != result.versions.end())
-    fmt::print("  {:<24} {}\n", "simulator", simulator->second);
-  for (const Warning& warning : result.warnings) {
-    if (warning.consequence == Consequence::kMissing)
-      fmt::print("  {:<24} {}\n", "missing", warning.subject);
-  }
-  if (result.audit) fmt::print("  {:<24} {}\n", "audit", result.audit->summary);
-  for (const std::string& note : result.this_run.notes) fmt::print("  {:<24} {}\n", "note", note);
+  for (const campaign::UavContacts& own : result.contacts) rows.emplace_back(own.uav, text_of(own));
+  add_circumstances(rows, result);
+  if (result.audit) rows.emplace_back("audit", result.audit->summary);
+  for (const std::string& note : result.this_run.notes) rows.emplace_back("note", note);
   if (std::filesystem::exists(spec.folder / runner::kRecordFile))
-    fmt::print("  {:<24} {}\n", "record", (spec.folder / runner::kRecordFile).string());
+    rows.emplace_back("record", (spec.folder / runner::kRecordFile).string());
+  print(rows);
 }
 
 int run_and_print(const RunOptions& options, const std::stop_token& stop) {

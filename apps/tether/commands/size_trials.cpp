@@ -205,13 +205,12 @@ int SizeTrials::say_why(End end) const {
                   folder_.path().string());
   if (end == End::kUndecidable)
     say("tether: no flight shows whether the computer is fast enough: all {} reached the goal of "
-        "the program, but {}. Mend that, or remove the limit.\n",
+        "the program, but {}. Correct that, or remove the limit.\n",
         flown_, why_without_value_);
   else if (end == End::kInterrupted)
     say("tether: interrupted after {} flights; to continue, type: {}\n", flown_, again);
   else
-    say("tether: {} flights failed, which says nothing about the computer. Mend the cause; to "
-        "continue, type: {}\n",
+    say("tether: {} flights failed without a result. Fix the cause; to continue, type: {}\n",
         not_flown_.size(), again);
   return exit_code(ErrorCode::kSetup);
 }

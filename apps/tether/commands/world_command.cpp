@@ -28,7 +28,7 @@ int check_world(const WorldCheckOptions& options, const std::stop_token&) {
   find_back_end("mujoco").start(std::move(world), {.answer_limit = {}, .log = {}, .warn = collect});
   fmt::print("{}: can be used ({} models, {} lights); {}\n{}", file, models, lights,
              warnings.empty()
-                 ? "all of it is simulated as written"
+                 ? "everything is simulated as written"
                  : fmt::format("{} things are not simulated as written", warnings.size()),
              grouped(warnings, std::numeric_limits<std::size_t>::max()));
   return 0;

@@ -1,6 +1,7 @@
 #include "options/command_line.h"
 
 #include "commands/commands.h"
+#include "options/complaint.h"
 #include "terminal/say.h"
 
 #include <algorithm>
@@ -9,7 +10,6 @@
 #include <memory>
 #include <stop_token>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -17,11 +17,10 @@
 #include <fmt/format.h>
 
 #include <tether/base/error.h>
-#include <tether/base/suggest.h>
 #include <tether/base/version.h>
 
-// The options of all commands, with their help texts; the only source that includes CLI11, which is
-// expensive to compile. docs/man/tether.1 describes the same options.
+// The options of all commands, with their help texts. Only this source and complaint.cpp include
+// CLI11, which is expensive to compile. docs/man/tether.1 describes the same options.
 namespace tether::app {
 
 namespace {
@@ -38,7 +37,20 @@ Examples:
   tether size face_anchor --target six_times_slower
   tether audit out/campaign/face_anchor/host/seed-0001/record.mcap
 
-Shipped files: /usr/share/tether (tether list). Guides: /usr/share/doc/tether/guide.)";
+`tether list` prints the shipped files. Guides: docs/guide of the source, or
+/usr/share/doc/tether/guide.)";
+
+/// Like CLI::Range, but rejects NaN, and shows the limits as they are written.
+CLI::Validator within(double least, double most) {
+  const std::string range = fmt::format("{} to {}", least, most);
+  return CLI::Validator(
+      [=](const std::string& text) -> std::string {
+        double value = 0.0;
+        if (CLI::detail::lexical_cast(text, value) && value >= least && value <= most) return {};
+        return fmt::format("must be a number from {}, but is '{}'", range, text);
+      },
+      range);
+}
 
 /// Adds a subcommand; if it is chosen, `action` calls `run` with the options that were parsed.
 template <class Options>
@@ -70,7 +82,7 @@ void add_reading_options(CLI::App& command, ReadingOptions& reading) {
       ->capture_default_str();
   command.add_flag(
       "--tolerant", reading.tolerant,
-      "Mend impossible inertias of the world and the UAVs, and name them in the result");
+      "Correct impossible inertias of the world and the UAVs, and name them in the result");
 }
 
 void add_junit_option(CLI::App& command, std::filesystem::path& junit) {
@@ -109,7 +121,7 @@ std::shared_ptr<RunOptions> add_run_command(CLI::App& program, Action& action) {
                       "Sensor profile that overrides the scenario's settings: name of a shipped "
                       "profile, or a file (TOML)");
   command->add_option("--seed", options->seed, "Seed of noise, delays and start poses")
-      ->check(CLI::Range(0.0, 9007199254740992.0))
+      ->check(within(0.0, 9007199254740992.0))
       ->capture_default_str();
   command->add_option("--out", options->out,
                       "Folder for result.json, record.mcap and the SUT's log. A folder with an "
@@ -121,20 +133,20 @@ std::shared_ptr<RunOptions> add_run_command(CLI::App& program, Action& action) {
   command
       ->add_option("--real-time-factor", options->real_time_factor,
                    "Maximum speed of the simulation relative to the wall clock")
-      ->check(CLI::Range(1e-3, 1e4));
+      ->check(within(1e-3, 1e4));
   command
       ->add_option("--cpu-time-scale", options->cpu_time_scale,
                    "With the clock \"cpu\": count CPU time so many times, because this machine is "
                    "that much faster than the one of other runs")
-      ->check(CLI::Range(1e-3, 1e3));
+      ->check(within(1e-3, 1e3));
   command
       ->add_option("--slowdown", options->slowdown,
                    "Make the SUT's computer so many times slower than the condition's")
-      ->check(CLI::Range(1e-3, 1e4));
+      ->check(within(1e-3, 1e4));
   command->add_option("--unknown-stages", options->unknown_stages,
-                      "With the clock \"replayed\": what stages are charged that were not "
-                      "recorded, instead of the condition's unknown_stages: refused, counted or "
-                      "zero");
+                      "With the clock \"replayed\": time of stages that were not recorded, "
+                      "instead of the condition's unknown_stages: refused (the run ends), counted "
+                      "or zero");
   command
       ->add_option("--set", options->settings,
                    "Replace a value of the scenario, given by its key's path: time_limit_s=30, "
@@ -235,7 +247,7 @@ void add_size_command(CLI::App& program, Action& action) {
       ->delimiter(',')
       ->expected(2);
   command->add_option("--max-trials", options->max_trials, "Maximum number of flights")
-      ->check(CLI::Range(1.0, 10000.0))
+      ->check(within(1.0, 10000.0))
       ->capture_default_str();
   command->add_option("--unsynchronised", options->unsynchronised,
                       "Condition without synchronisation to compare: fly it with the same "
@@ -335,7 +347,7 @@ void add_audit_command(CLI::App& program, Action& action) {
   command->add_option("record", options->record, "record.mcap of a run")->required();
   command
       ->add_option("--max-findings", options->max_findings, "Maximum number of findings to print")
-      ->check(CLI::Range(0.0, 1e9))
+      ->check(within(0.0, 1e9))
       ->capture_default_str();
   command->footer(
       R"(Exit codes: 0 all rules are kept, 1 a rule is violated or the record is incomplete.
@@ -367,7 +379,7 @@ void add_timing_command(CLI::App& program, Action& action) {
   command
       ->add_option("--limit", options->limit_percent,
                    "With --against: the most by which a stage may become slower, in percent")
-      ->check(CLI::Range(0.0, 1e6));
+      ->check(within(0.0, 1e6));
   command->footer(
       R"(Exit codes: 0 no stage is slower than --limit allows, or there is no limit, 1 one is, 2 wrong
 use or a bad file.
@@ -392,9 +404,9 @@ void add_world_command(CLI::App& program, Action& action) {
   CLI::App* world = program.add_subcommand("world", "Check worlds before a flight");
   world->require_subcommand(1);
   world->footer("Examples:\n  tether world check room");
-  const auto [check, options] =
-      add_command(*world, action, "check",
-                  "Read a world, and print what of it is not simulated as written", check_world);
+  const auto [check, options] = add_command(
+      *world, action, "check",
+      "Read a world, and print the parts that are not simulated as written", check_world);
   check->add_option("world", options->world, "Name of a shipped world, or a file (SDF)")
       ->required();
   add_reading_options(*check, options->reading);
@@ -422,37 +434,6 @@ void add_target_command(CLI::App& program, Action& action) {
 Examples:
   tether target check
   tether target check ssh://pi@board.local)");
-}
-
-/// The command that was given last: the program itself if there is none.
-const CLI::App& innermost(const CLI::App& app) {
-  const auto chosen = app.get_subcommands();
-  return chosen.empty() ? app : innermost(*chosen.front());
-}
-
-/// "tether run".
-std::string command_words(const CLI::App& command) {
-  const CLI::App* parent = command.get_parent();
-  return parent ? command_words(*parent) + " " + command.get_name() : command.get_name();
-}
-
-/// For a word that is neither a command nor an option: the nearest one that is. Empty if there is
-/// no such word, or nothing is near.
-std::string suggestion(const CLI::App& program) {
-  const CLI::App& command = innermost(program);
-  std::vector<std::string> known;
-  for (const CLI::App* sub : command.get_subcommands([](const CLI::App*) { return true; }))
-    known.push_back(sub->get_name());
-  for (const CLI::Option* option : command.get_options())
-    for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
-  const std::vector<std::string_view> candidates(known.begin(), known.end());
-  for (const std::string& word : command.remaining()) {
-    const std::string given = word.substr(0, word.find('='));
-    if (const std::string_view near = nearest(given, candidates); !near.empty())
-      return fmt::format("unknown {} '{}'; did you mean '{}'?",
-                         given.starts_with('-') ? "option" : "command", given, near);
-  }
-  return "";
 }
 
 }  // namespace
@@ -484,13 +465,9 @@ int run_command_line(int argc, char** argv, std::optional<os::Interrupt>& interr
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
-    const bool is_wrong = e.get_exit_code() != 0;
-    const std::string hint = is_wrong ? suggestion(program) : "";
-    if (!hint.empty())
-      say("tether: {} For a list, type: {} --help\n", hint, command_words(innermost(program)));
-    else
-      program.exit(e);
-    return is_wrong ? exit_code(ErrorCode::kUsage) : 0;
+    if (e.get_exit_code() == 0) return program.exit(e);  // --help, --version
+    say("tether: {}\n", complaint(program, e));
+    return exit_code(ErrorCode::kUsage);
   }
   interrupt.emplace();
   return action(interrupt->token());

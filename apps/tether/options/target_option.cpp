@@ -5,7 +5,9 @@ namespace tether::app {
 TargetOption parse_target_option(const std::string& text) {
   if (text.empty()) return std::monostate{};
   if (text == "wait") return WaitForSut{};
-  if (text.find("://") != std::string::npos) return scenario::parse_ssh_address(text);
+  const bool is_address = text.find("://") != std::string::npos || text.starts_with("ssh:") ||
+                          (text.find('@') != std::string::npos && text.find('/') == text.npos);
+  if (is_address) return scenario::parse_ssh_address(text);  // or says what is wrong with it
   return std::filesystem::path(text);
 }
 

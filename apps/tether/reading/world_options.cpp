@@ -25,7 +25,7 @@ std::string summary_of(std::span<const Warning> warnings, const std::string& lis
       text += fmt::format("{}warning: {}", text.empty() ? "" : "\n", to_line(warning));
     return text;
   }
-  text = fmt::format("warning: {} things are not simulated as their files say. All of them: {}\n{}",
+  text = fmt::format("warning: {} parts are not simulated as written. All of them: {}\n{}",
                      warnings.size(), list, grouped(warnings, kFew));
   text.pop_back();
   return text;

@@ -25,8 +25,26 @@ TEST(CommandLine, SuggestsTheNearestCommandOrOption) {
       {{"tether", "report", "x", "--fromat=csv"}, "'--format'"}};
   for (const auto& [words, suggested] : cases)
     EXPECT_THAT(refusal(words), testing::HasSubstr(suggested));
-  EXPECT_NE(refusal({"tether", "whatever"}), "");
-  EXPECT_NE(refusal({"tether"}), "");
+}
+
+TEST(CommandLine, NamesWhatIsWrongInOneLineWithTheHelpOfItsCommand) {
+  const std::pair<std::vector<std::string>, std::pair<std::string, std::string>> cases[] = {
+      {{"tether"}, {"command", "tether --help"}},
+      {{"tether", "whatever"}, {"command 'whatever'", "tether --help"}},
+      {{"tether", "run"}, {"scenario", "tether run --help"}},
+      {{"tether", "run", "x", "y"}, {"argument 'y'", "tether run --help"}},
+      {{"tether", "world", "check"}, {"world", "tether world check --help"}},
+      {{"tether", "run", "x", "--seed", "-1"}, {"--seed", "0 to 9007199254740992, but is '-1'"}},
+      {{"tether", "run", "x", "--seed", "many"}, {"--seed", "'many'"}},
+      {{"tether", "run", "x", "--slowdown", "nan"}, {"--slowdown", "0.001 to 10000"}},
+      {{"tether", "size", "x", "--between", "5"}, {"--between", "tether size --help"}}};
+  for (const auto& [words, parts] : cases) {
+    const std::string line = refusal(words);
+    EXPECT_THAT(line, testing::StartsWith("tether: "));
+    EXPECT_THAT(line, testing::HasSubstr(parts.first));
+    EXPECT_THAT(line, testing::HasSubstr(parts.second));
+    EXPECT_EQ(line.find('\n'), line.size() - 1);
+  }
 }
 
 }  // namespace

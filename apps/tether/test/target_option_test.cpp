@@ -12,9 +12,10 @@ TEST(TargetOption, IsAFileAnAddressOrWait) {
   EXPECT_TRUE(std::holds_alternative<WaitForSut>(parse_target_option("wait")));
   EXPECT_EQ(std::get<scenario::SshAddress>(parse_target_option("ssh://pi@board:2222")).destination,
             "pi@board");
-  for (const std::string file : {"slow.toml", "./wait", "targets/wait", "Wait", "ssh:board"})
+  for (const std::string file : {"slow.toml", "./wait", "targets/wait", "Wait", "a@b/slow.toml"})
     EXPECT_EQ(std::get<std::filesystem::path>(parse_target_option(file)), file);
-  for (const std::string text : {"ssh://", "http://board", "://"})
+  for (const std::string text :
+       {"ssh://", "http://board", "://", "ssh:board", "ssh:/board", "pi@board"})
     thrown_error(ErrorCode::kUsage, [&] { parse_target_option(text); });
 }
 

@@ -2,6 +2,7 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
 #include <functional>
 #include <map>
 #include <mutex>
@@ -105,8 +106,20 @@ class Streams {
   FileDescriptor input_, log_, errors_;
 };
 
+bool is_script(const std::string& program) {
+  std::ifstream file(program, std::ios::binary);
+  return file.get() == '#' && file.get() == '!';
+}
+
 Error cannot_start(const std::string& program, int why) {
-  return Error(ErrorCode::kSetup, "cannot start \"" + program + "\": " + reason_of(why))
+  std::string advice;
+  if (why == ENOEXEC)
+    advice =
+        ". It is not a program for this machine: build it for the architecture that `uname -m` "
+        "prints. A script must begin with #! and its interpreter";
+  else if (why == ENOENT && is_script(program))
+    advice = ". The interpreter in its first line is missing";
+  return Error(ErrorCode::kSetup, "cannot start \"" + program + "\": " + reason_of(why) + advice)
       .about(program);
 }
 

@@ -1,6 +1,7 @@
 // Whole files: replaced by way of a file beside them, read with a limit, and their digests, which
 // are remembered for as long as the file system shows that a file did not change.
 
+#include <algorithm>
 #include <cerrno>
 #include <cinttypes>
 #include <cstdint>
@@ -12,14 +13,17 @@
 #include <mutex>
 #include <optional>
 #include <sstream>
+#include <string_view>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <tether/base/error.h>
+#include <tether/base/suggest.h>
 #include <tether/base/system_reason.h>
 #include <tether/os/file_descriptor.h>
 #include <tether/os/pipe.h>
@@ -98,9 +102,20 @@ void write_file_atomically(const std::filesystem::path& path, std::string_view t
 }
 
 std::string why_no_file(const std::filesystem::path& path) {
+  constexpr std::size_t kMostNeighbours = 1000;
   std::error_code failed;
-  if (std::filesystem::exists(path, failed)) return "that is no regular file";
-  return failed ? "it cannot be reached: " + failed.message() : "there is no such file";
+  if (std::filesystem::exists(path, failed)) return "it is not a regular file";
+  if (failed) return "it cannot be reached: " + failed.message();
+  std::vector<std::string> names;
+  const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+  for (std::filesystem::directory_iterator entry(folder, failed), end;
+       !failed && entry != end && names.size() < kMostNeighbours; entry.increment(failed))
+    names.push_back(entry->path().filename());
+  std::sort(names.begin(), names.end());
+  const std::vector<std::string_view> candidates(names.begin(), names.end());
+  const std::string_view near = nearest(path.filename().native(), candidates);
+  return "there is no such file" +
+         (near.empty() ? "" : "; did you mean '" + std::string(near) + "'?");
 }
 
 std::string read_file(const std::filesystem::path& file, std::uintmax_t limit) {

@@ -189,6 +189,12 @@ TEST_F(Child, RefusesWhatCannotBeStarted) {
   ChildCommand text = shell(""), nowhere = shell("true"), no_log = shell("true");
   text.arguments = {scratch_.write("text", "no program")};
   EXPECT_EQ(error_of(text).subject(), text.arguments[0]);
+  std::filesystem::permissions(text.arguments[0], std::filesystem::perms::owner_all);
+  EXPECT_NE(std::string(error_of(text).what()).find("uname -m"), std::string::npos);
+  ChildCommand script = shell("");
+  script.arguments = {scratch_.write("script", "#!/none/interpreter\n")};
+  std::filesystem::permissions(script.arguments[0], std::filesystem::perms::owner_all);
+  EXPECT_NE(std::string(error_of(script).what()).find("interpreter"), std::string::npos);
   nowhere.working_folder = scratch_.path("none");
   EXPECT_EQ(std::filesystem::path(error_of(nowhere).subject()).filename(), "sh");
   no_log.log = scratch_.path("none/log");

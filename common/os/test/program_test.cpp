@@ -47,6 +47,12 @@ TEST(FindProgram, RefusesWhatCannotBeExecuted) {
   const Path path(scratch.path());
   for (const std::string& name : {std::string("text"), text})
     EXPECT_EQ(thrown_error(ErrorCode::kSetup, [&] { find_program(name); }).subject(), name);
+  const auto advice = [](const fs::path& file) {
+    return std::string(thrown_error(ErrorCode::kSetup, [&] { find_program(file); }).what());
+  };
+  EXPECT_NE(advice(text).find("chmod +x " + text), std::string::npos);
+  for (const fs::path& file : {scratch.path("none"), scratch.path(".")})
+    EXPECT_EQ(advice(file).find("chmod"), std::string::npos);
 }
 
 }  // namespace

@@ -82,6 +82,14 @@ TEST(ReadFile, NamesAMissingFile) {
   EXPECT_EQ(bad_file_error([&] { (void)read_file(file); }).where().file, file);
 }
 
+TEST(WhyNoFile, SuggestsTheNearestNameInTheFolder) {
+  const ScratchFolder scratch;
+  scratch.write("hover.toml", "");
+  EXPECT_NE(why_no_file(scratch.path("hovr.toml")).find("'hover.toml'"), std::string::npos);
+  EXPECT_EQ(why_no_file(scratch.path("quux")).find('\''), std::string::npos);
+  EXPECT_EQ(why_no_file(scratch.path("none/hovr.toml")).find('\''), std::string::npos);
+}
+
 // Values of the FNV reference (Fowler, Noll, Vo): fnv1a_64 of "" and of "foobar".
 TEST(DigestOfFile, IsFnv1a) {
   const ScratchFolder scratch;

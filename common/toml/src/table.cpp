@@ -276,8 +276,8 @@ std::filesystem::path Table::existing_file(std::string_view key) const {
   std::error_code ignored;
   const fs::path path = (fs::path(file_).parent_path() / written).lexically_normal();
   if (!fs::is_regular_file(path, ignored)) {
-    fail(key,
-         "names \"" + written + "\", but " + os::why_no_file(path) + " (" + path.string() + ")");
+    const std::string full = path == written ? "" : " (" + path.string() + ")";
+    fail(key, "names \"" + written + "\"" + full + ", but " + os::why_no_file(path));
   }
   return path;
 }
@@ -393,7 +393,7 @@ Document Document::parse(std::string_view text, const std::string& file) {
             file};
   } catch (const ::toml::parse_error& error) {
     throw Error(ErrorCode::kBadFile, {file, line_of(error.source())},
-                "no valid TOML: " + std::string(error.description()));
+                "not valid TOML: " + std::string(error.description()));
   }
 }
 

@@ -76,7 +76,7 @@ Finding check_throttled(const Readings& readings) {
   const std::uint32_t past = (bits & kSinceStart) >> 16;
   if (past)
     return {"throttling", fmt::format("{} since the start ({})", throttle_names(past), value),
-            Health::kWarn, throttle_remedy(past) + "; it may come again under load"};
+            Health::kWarn, throttle_remedy(past) + "; it may recur under load"};
   return {"throttling", "none", Health::kOk, ""};
 }
 
@@ -160,7 +160,7 @@ std::optional<Finding> check_throttle_count(const Readings& readings) {
   const bool never = *count == 0.0;
   return Finding{"slowed for heat",
                  never ? "never" : fmt::format("{:.0f} times since the start", *count),
-                 never ? Health::kOk : Health::kWarn, never ? "" : "it may come again under load"};
+                 never ? Health::kOk : Health::kWarn, never ? "" : "it may recur under load"};
 }
 
 std::optional<Finding> check_load(const Readings& readings) {

@@ -115,7 +115,8 @@ std::optional<Ending> Watchdog::overdue(const std::vector<Party>& parties, SimTi
   for (const Party& party : parties) {
     if (!running_ && !party.joined && party.silence > limits_.connect)
       return Ending{RunEnd::kSutLost,
-                    fmt::format("no SUT joined for UAV \"{}\" within {} s (connect_limit_s)",
+                    fmt::format("the SUT of UAV \"{}\" did not connect within {} s "
+                                "(connect_limit_s). A SUT calls tether_connect() to connect",
                                 party.uav, to_seconds(limits_.connect))};
     if (running_ && party.computing && party.silence > limits_.hang)
       return Ending{

@@ -197,8 +197,13 @@ std::string SutProcesses::describe_end(Sut& sut, const std::string& reason) cons
   const SutEnd end = sut.board ? sut.board->end_of(exit, last) : SutEnd{{}, exit.description};
   const bool is_complete =
       last.empty() || repeats(last, reason) || end.cause == board::SutEndCause::kNotStarted;
+  // An end without a finish is a failure, even with the exit code of success. Of several SUTs in a
+  // run that began, this one may have finished.
+  const bool is_unfinished = exit.code == 0 && (reason.empty() || suts_.size() == 1);
+  const char* const missing =
+      is_unfinished ? " (it must call tether_connect() and, at its end, tether_finish())" : "";
   return fmt::format(
-      "{} ({}) {}{}", sut.name, sut.program, end.description,
+      "{} ({}) {}{}{}", sut.name, sut.program, end.description, missing,
       is_complete ? "" : fmt::format("; last line of {}: {}", sut.log.string(), last));
 }
 

@@ -66,8 +66,15 @@ TEST_F(Suts, ReportTheFirstEndWithTheLastLineOfItsOutput) {
   EXPECT_THAT(end, testing::EndsWith("sut-uav2.log: the reason"));
 }
 
+TEST_F(Suts, NameTheMissingCallsOfAProgramThatEndsWithoutAnError) {
+  start({"exit 0"});
+  EXPECT_THAT(early_end(), HasSubstr("tether_finish()"));
+  EXPECT_THAT(suts_.post_mortem("lost"), HasSubstr("tether_finish()"));
+}
+
 TEST_F(Suts, ReportSignals) {
   start({"exit 0", "kill -SEGV $$"});
+  EXPECT_THAT(suts_.post_mortem("lost"), testing::Not(HasSubstr("tether_finish()")));
   EXPECT_THAT(suts_.await_exit(), ElementsAre(HasSubstr("\"uav2\"")));
   EXPECT_THAT(suts_.post_mortem(""),
               testing::EndsWith("was ended by signal 11 (Segmentation fault)"));

@@ -40,7 +40,7 @@ void require_decidable(const Scenario& scenario) {
   const std::string file = scenario.file.string();
   if (scenario.metrics.empty())
     throw Error(ErrorCode::kBadFile, {file},
-                "no [[metric]] has a limit, so that no flight says whether the computer is fast "
+                "no [[metric]] has a limit, so no flight can show whether the computer is fast "
                 "enough. Add one, such as kind = \"time_required\" with max_s.")
         .about("metric");
   const auto limited = std::ranges::find_if(scenario.metrics, has_limit);
@@ -49,9 +49,9 @@ void require_decidable(const Scenario& scenario) {
   const FileLocation where{file, metric.limit_line};
   if (limited == scenario.metrics.end())
     throw Error(ErrorCode::kBadFile, where,
-                fmt::format("metric \"{}\" has no limit, and no other one has, so that no flight "
-                            "says whether the computer is fast enough. Set '{}'.",
-                            metric.name, key))
+                fmt::format("no [[metric]] has a limit, so no flight can show whether the computer "
+                            "is fast enough. Set '{}' of \"{}\".",
+                            key, metric.name))
         .about(key);
   throw Error(ErrorCode::kBadFile, where,
               fmt::format("the limit of metric \"{}\" ({} = {}) decides nothing, because {}. Set "

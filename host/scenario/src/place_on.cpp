@@ -21,7 +21,7 @@ std::string why_not_on(const Condition& condition, const Target& target) {
           condition.computers[seat.computer].name, target.name);
   if (target.ssh && condition.computers.size() > 1)
     return fmt::format(
-        "{} targets cannot all be the board at {}. Give each [[target]] a file of its own.",
+        "{} targets cannot all be the board at {}. Give each [[target]] its own file.",
         condition.computers.size(), to_string(*target.ssh));
   return "";
 }

@@ -20,12 +20,14 @@ struct Place {
   const char* name;
   const char* folder;
   const char* extension;
+  const char* use;  ///< what to type before a file's name
 };
-constexpr std::array<Place, 5> kPlaces = {{{"scenario", "scenarios", ".toml"},
-                                           {"campaign", "campaigns", ".toml"},
-                                           {"world", "worlds", ".sdf"},
-                                           {"profile", "profiles", ".toml"},
-                                           {"target", "profiles/targets", ".toml"}}};
+constexpr std::array<Place, 5> kPlaces = {
+    {{"scenario", "scenarios", ".toml", "tether run"},
+     {"campaign", "campaigns", ".toml", "tether campaign"},
+     {"world", "worlds", ".sdf", "tether world check"},
+     {"profile", "profiles", ".toml", "tether run SCENARIO --profile"},
+     {"target", "profiles/targets", ".toml", "tether run SCENARIO --target"}}};
 
 const Place& place_of(ShippedKind kind) {
   return kPlaces.at(static_cast<std::size_t>(kind));
@@ -93,6 +95,12 @@ fs::path ShippedFiles::find(ShippedKind kind, const std::string& given) const {
     return path;
   const fs::path shipped = file_of(kind, given);
   if (fs::is_regular_file(shipped, ignored)) return shipped;
+  for (const Place& other : kPlaces)
+    if (fs::is_regular_file(data_ / other.folder / (given + other.extension), ignored))
+      throw Error(ErrorCode::kUsage,
+                  fmt::format("'{0}' is a shipped {1}, not a {2}. To use it, type: {3} {0}", given,
+                              other.name, place_of(kind).name, other.use))
+          .about(given);
   const auto files = list(kind);
   std::vector<std::string_view> names;
   for (const ShippedFile& file : files) names.push_back(file.name);

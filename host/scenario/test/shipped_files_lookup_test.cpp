@@ -39,6 +39,7 @@ TEST_F(ShippedFilesLookup, RefusesANameOfNoFileAndNamesTheNearestOfTheSameKind) 
   EXPECT_THAT(refusal(ShippedKind::kScenario, "hovr"), HasSubstr("'hover'"));
   EXPECT_THAT(refusal(ShippedKind::kScenario, "xyzzy_quux"), Not(HasSubstr("'hover'")));
   EXPECT_THAT(refusal(ShippedKind::kCampaign, "hovr"), Not(HasSubstr("'hover'")));
+  EXPECT_THAT(refusal(ShippedKind::kCampaign, "hover"), HasSubstr("tether run hover"));
 }
 
 TEST_F(ShippedFilesLookup, ListsNamesWithDescriptionsInOrder) {

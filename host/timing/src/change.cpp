@@ -94,7 +94,7 @@ std::string to_text(const Comparison& comparison, const double* limit) {
   for (const std::string& stage : comparison.added)
     out += fmt::format("{}: new; the old timing does not have it\n", stage);
   for (const std::string& stage : comparison.removed)
-    out += fmt::format("{}: gone; the new timing does not have it\n", stage);
+    out += fmt::format("{}: missing from the new timing\n", stage);
   return out;
 }
 

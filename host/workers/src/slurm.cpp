@@ -65,7 +65,7 @@ class Slurm final : public Engine {
     }
     if (answer.code == 0) return true;
     throw Error(ErrorCode::kSetup,
-                fmt::format("Slurm refuses the job: {}. Check --slurm-options, and continue with "
+                fmt::format("Slurm rejected the job: {}. Check --slurm-options, and continue with "
                             "--resume.",
                             reason_in(answer)))
         .about("--slurm");
@@ -97,7 +97,7 @@ class Slurm final : public Engine {
   void cancel(const Round& round) override {
     const Answer answer = settings_.run({"scancel", "--name=" + round.settings().job});
     if (answer.code == 0) return;
-    throw Error(ErrorCode::kSetup, fmt::format("Slurm refuses to cancel job {}: {}. Try again.",
+    throw Error(ErrorCode::kSetup, fmt::format("Slurm did not cancel job {}: {}. Try again.",
                                                round.settings().job, reason_in(answer)))
         .about("--cancel");
   }

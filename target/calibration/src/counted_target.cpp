@@ -98,9 +98,8 @@ std::vector<std::string> row(const CountedTarget& target, const CountedBlock& bl
 }
 
 constexpr const char* kWhatIsNotKnown =
-    "The costs are averages over this work. They do not know which accesses miss a cache, how "
-    "much\n"
-    "memory bandwidth is left, or how the clock rate changes.\n";
+    "The costs are averages over this work. They do not represent cache misses, memory bandwidth\n"
+    "and changes of the clock rate.\n";
 
 }  // namespace
 

@@ -125,8 +125,8 @@ std::string comparison_table(const Calibration& here, const Calibration& there,
   rows.push_back({"geometric mean", "", in_words(comparison.overall.value),
                   in_words(comparison.overall.interval)});
   return "CPU time on " + machine_line(there.machine) + "\nagainst " + machine_line(here.machine) +
-         "\n\n" + text_table(rows) + "The mean is of the blocks without " + kWholeStep +
-         ", which is all of them in one.\n" + doubts_text(there, "", doubts_text(here)) +
+         "\n\n" + text_table(rows) + "The geometric mean leaves out " + kWholeStep +
+         ", which contains the other blocks.\n" + doubts_text(there, "", doubts_text(here)) +
          agreement_text(comparison);
 }
 

@@ -1,8 +1,11 @@
 #include <limits>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
+#include <tether/base/suggest.h>
 #include <tether/tasks/task_context.h>
 
 namespace tether::tasks {
@@ -14,9 +17,25 @@ void annotate(client::Vehicle& vehicle, std::string_view topic, const json& note
   (void)vehicle.annotate(topic, note.dump(-1, ' ', false, json::error_handler_t::replace));
 }
 
-Failure no_such(std::string_view kind, std::string_view name) {
-  return {Failure::Kind::kInvalid,
-          "the catalogue has no " + std::string(kind) + " \"" + std::string(name) + "\""};
+Failure no_such(std::string_view kind, std::string_view name,
+                const std::vector<std::string_view>& known) {
+  return {Failure::Kind::kInvalid, "there is no " + std::string(kind) + " \"" + std::string(name) +
+                                       "\"; " + allowed_hint(name, known)};
+}
+
+/// @param kind  of the sensors; all if none is given
+std::vector<std::string_view> sensor_names(const uav::Catalogue& catalogue,
+                                           std::optional<uav::SensorKind> kind = {}) {
+  std::vector<std::string_view> names;
+  for (const uav::SensorDescription& sensor : catalogue.sensors)
+    if (!kind || sensor.kind() == *kind) names.push_back(sensor.name);
+  return names;
+}
+
+std::vector<std::string_view> anchor_names(const uav::Catalogue& catalogue) {
+  std::vector<std::string_view> names;
+  for (const uav::Anchor& anchor : catalogue.anchors) names.push_back(anchor.name);
+  return names;
 }
 
 }  // namespace
@@ -31,14 +50,15 @@ void TaskContext::look_with(VisionOptions vision) {
 
 Result<const uav::SensorDescription*> TaskContext::sensor(std::string_view name) const {
   const uav::SensorDescription* sensor = vehicle_.catalogue().find_sensor(name);
-  if (sensor == nullptr) return no_such("sensor", name);
+  if (sensor == nullptr) return no_such("sensor", name, sensor_names(vehicle_.catalogue()));
   return sensor;
 }
 
 Result<const uav::SensorDescription*> TaskContext::sensor(std::string_view name,
                                                           uav::SensorKind kind) const {
   const uav::SensorDescription* sensor = vehicle_.catalogue().find_sensor(name);
-  if (sensor == nullptr || sensor->kind() != kind) return no_such(uav::name(kind), name);
+  if (sensor == nullptr || sensor->kind() != kind)
+    return no_such(uav::name(kind), name, sensor_names(vehicle_.catalogue(), kind));
   return sensor;
 }
 
@@ -52,7 +72,7 @@ Result<const uav::SensorDescription*> TaskContext::camera() const {
 
 Result<const uav::Anchor*> TaskContext::anchor(std::string_view name) const {
   const uav::Anchor* anchor = vehicle_.catalogue().find_anchor(name);
-  if (anchor == nullptr) return no_such("anchor", name);
+  if (anchor == nullptr) return no_such("anchor", name, anchor_names(vehicle_.catalogue()));
   return anchor;
 }
 

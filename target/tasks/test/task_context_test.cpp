@@ -37,6 +37,9 @@ TEST(TaskContext, NamesWhatTheCatalogueLacks) {
   expect_missing(TaskContext(vehicle, {"imu", {}}).camera(), "imu");
   expect_missing(context.sensor("gps", uav::SensorKind::kImu), "gps");
   expect_missing(context.anchor("door"), "door");
+  EXPECT_THAT(context.anchor("door").failure().message, HasSubstr("'blue_box'"));
+  EXPECT_THAT(TaskContext(vehicle, {"imu", {}}).camera().failure().message,
+              ::testing::Not(HasSubstr("'imu'")));
   expect_missing(context.tracker("door"), "door");
   expect_missing(context.tracker("grey_box"), "grey_box");
   VisionOptions unusable{"eye", {}};

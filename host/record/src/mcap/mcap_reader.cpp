@@ -50,7 +50,7 @@ class InputFile {
       require_a_handle_for(path.string());
       const std::string why = error                                  ? error.message()
                               : errno != 0                           ? reason_of(errno)
-                              : std::filesystem::exists(path, error) ? "it is no regular file"
+                              : std::filesystem::exists(path, error) ? "it is not a regular file"
                                                                      : "there is no such file";
       throw Error(ErrorCode::kBadFile, FileLocation{path.string(), 0},
                   "cannot read this record: " + why + ". Give the record.mcap of a run");

@@ -109,10 +109,8 @@ std::string evidence_of(const ConditionVerdict& condition) {
           flights(condition.unsound), condition.condition, condition.unsound == 1 ? "s" : "",
           condition.reason);
     case Ruling::kSetUpFailed:
-      return fmt::format(
-          "on “{}” the set-up or a part of it failed in {} ({}), which says nothing about the "
-          "computer.",
-          condition.condition, flights(condition.failed), condition.reason);
+      return fmt::format("on “{}” {} failed without a result ({}).", condition.condition,
+                         flights(condition.failed), condition.reason);
     case Ruling::kNotFastEnough:
       return missed_goals_text(condition) + with_pace;
     case Ruling::kUndecided:
@@ -227,11 +225,11 @@ std::string sentence_of(const Advice& advice, const Verdict& verdict) {
   const ConditionVerdict& lead = lead_of(verdict);
   switch (advice.kind) {
     case Kind::kMendSetUp:
-      return "Mend the cause of the failure, then fly again; a campaign goes on with `--resume`.";
+      return "Fix the cause of the failure, then fly again; a campaign continues with `--resume`.";
     case Kind::kReadAudit:
       return fmt::format(
-          "Read what `tether audit` says of the records of “{}”. If the program stamps its own "
-          "time, look there first.",
+          "Run `tether audit` on the records of “{}”. If the program stamps its own time, check "
+          "that first.",
           advice.subject);
     case Kind::kCoolBoard:
       return "Cool the board, or give it enough power (`tether target check`), and fly again.";
@@ -248,7 +246,7 @@ std::string sentence_of(const Advice& advice, const Verdict& verdict) {
         return fmt::format("Fly more: the share is so near to {} that {} do not decide it.",
                            kWanted, flights(lead.flown));
       return fmt::format(
-          "Fly more: if it goes on like this, {} decide (`trials` in the campaign's file, then "
+          "Fly more: if this share continues, {} decide (`trials` in the campaign's file, then "
           "`--resume`).",
           flights(advice.flights));
     case Kind::kSetLimit:
@@ -404,7 +402,8 @@ Table rulings_table(const std::vector<Verdict>& points) {
                   "sure.",
                   kWanted),
       "Headroom per image: how many times slower the program could compute and still read every "
-      "image of the camera, in 95 % of them; below 1, it skips images, which a task may bear. The "
+      "image of the camera, in 95 % of them; below 1, it skips images, which many tasks tolerate. "
+      "The "
       "headroom of the whole task: tether size."};
   return table;
 }

@@ -116,8 +116,8 @@ std::string threshold_advice(const ConditionVerdict& lead) {
         "(`tether-sut calibrate`), and name it with `tether size SCENARIO --target`.",
         what);
   return fmt::format(
-      "`tether size` finds {}, for a scenario's own conditions on virtual targets. Write what was "
-      "flown here as one of them.",
+      "`tether size` finds {}, for a scenario's own conditions on virtual targets. Add the one "
+      "that was flown here to the scenario.",
       what);
 }
 

@@ -94,14 +94,15 @@ std::string mission_part(const campaign::TrialResult& trial) {
   for (const campaign::SutResult& sut : trial.suts) {
     const std::string drawing = mission_timeline(trial, sut.uav);
     if (!drawing.empty())
-      html += figure(
-          drawing,
-          fmt::format("Tasks (bars) and clauses (lines) of {}. A line is the time that a "
-                      "clause is about, a stroke its deadline, a dot the time when it "
-                      "was decided; the thin curve, the margin over time, with 0 in the middle of "
-                      "the lane; at the right, status and margin.",
-                      sut.uav),
-          "plot");
+      html +=
+          figure(drawing,
+                 fmt::format(
+                     "Tasks (bars) and clauses (lines) of {}. A line is the time that a "
+                     "clause is about, a stroke its deadline, a dot the time when it "
+                     "was decided. The thin curve is the margin over time, with 0 in the middle of "
+                     "the lane. At the right: status and margin.",
+                     sut.uav),
+                 "plot");
   }
   return html + to_html(table, "Mission");
 }
@@ -122,11 +123,12 @@ std::string boards_part(const record::Record& record) {
                                        "which one computed when is not known.",
                                        joined_with_and(uavs_on(record, board)), board.name));
     } else if (const std::string drawing = board_lanes(record, board); !drawing.empty()) {
-      html += figure(drawing,
-                     fmt::format("Cores of \"{}\": which SUT computed when, and with which share. "
-                                 "While more compute than there are cores, each has less of one.",
-                                 board.name),
-                     "plot");
+      html +=
+          figure(drawing,
+                 fmt::format("Cores of \"{}\": which SUT computed when, and with which share. "
+                             "If more SUTs compute than there are cores, each has a part of one.",
+                             board.name),
+                 "plot");
     }
   return html.empty() ? "" : element("h2", "Shared boards") + html;
 }

@@ -73,7 +73,7 @@ std::vector<std::string> timing_advice(const timing::Timing& timing,
   const std::string how =
       timing.clock == "wall"
           ? "`tether size`, with a condition that replays these times (`clock = \"replayed\"`)."
-          : fmt::format("`tether size {}` (of a scenario of your own: its file).",
+          : fmt::format("`tether size {}` (for your own scenario: its file).",
                         os::shell_word(timing.scenario));
   advice.push_back(
       "Times alone do not show whether the computer is fast enough. To find its headroom: " + how);

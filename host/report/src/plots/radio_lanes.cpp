@@ -85,7 +85,7 @@ std::string draw_columns(const Batches& columns, double middle, int most) {
 std::string link_summary(const RadioLink& link) {
   const auto ratio = link.delivery_ratio();
   std::string text = ratio ? fmt::format("{:.1f} % of {}", 100.0 * *ratio, link.messages)
-                           : fmt::format("{} on their way", link.messages);
+                           : fmt::format("{} in transit", link.messages);
   if (!link.delays_s.empty()) text += ", " + short_ms(stats::quantile(link.delays_s, 0.5));
   return text;
 }

@@ -66,7 +66,7 @@ Table radio_table(const record::Record& record) {
   if (!table.rows.empty())
     table.notes = {
         fmt::format("Radio: {}. A message to all UAVs counts once for each. Messages "
-                    "that were on their way at the end are neither arrived nor lost.",
+                    "in transit at the end are neither arrived nor lost.",
                     record.header.radio.model)};
   return table;
 }

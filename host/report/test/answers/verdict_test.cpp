@@ -253,7 +253,7 @@ TEST(Verdict, SaysWhatItsWordsRestOn) {
     return verdict_text({verdict_of(scenario)}, Markup::kPlain);
   };
   EXPECT_THAT(text(flights(7, 3)), HasSubstr("Undecided: on “target” 3 of 10 flights miss"));
-  EXPECT_THAT(text(flights(7, 3)), HasSubstr("Fly more: if it goes on like this, "));
+  EXPECT_THAT(text(flights(7, 3)), HasSubstr("Fly more: if this share continues, "));
   EXPECT_THAT(text(flights(10, 0)), HasSubstr("36 flights decide"));
   EXPECT_THAT(text(flights(9, 1)), HasSubstr("so near to 9 of 10"));
   EXPECT_THAT(text(flights(1, 0)), StartsWith("Fast enough in this flight: "));

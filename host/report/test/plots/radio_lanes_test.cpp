@@ -59,8 +59,7 @@ TEST(RadioLanes, HasALaneForEachLinkWithWhatArrivedAndWasLost) {
   const Drawn picture = drawn(record);
   EXPECT_EQ(picture.arrived, 2) << "one column for those of 1 s";
   EXPECT_EQ(picture.lost, 1);
-  EXPECT_THAT(picture.texts,
-              HasSubstr("a → b|75.0 % of 4, 2.0 ms|b → <a>|1 on their way|0|1|2|3|"));
+  EXPECT_THAT(picture.texts, HasSubstr("a → b|75.0 % of 4, 2.0 ms|b → <a>|1 in transit|0|1|2|3|"));
 }
 
 TEST(RadioLanes, ShowsThoseOfManyLinksThatLostMost) {

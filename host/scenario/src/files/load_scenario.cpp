@@ -257,6 +257,9 @@ Metric read_metric(const toml::Table& table, const Scenario& scenario) {
                                   : metric.kind + "_" + metric.uav;
   metric.label = table.text_or(
       "label", is_alone ? std::string(kind.label) : fmt::format("{}, {}", kind.label, metric.uav));
+  if (kind.needs_anchor && scenario.anchors.empty())
+    table.fail("kind",
+               fmt::format("is \"{}\", which needs an anchor. Name one in 'anchors'.", kind.name));
   if (kind.needs_anchor) metric.anchor = choose(table, "anchor", scenario.anchors);
   if (kind.needs_sensor) {
     metric.sensor = table.text("sensor");

@@ -321,6 +321,7 @@ TEST_F(LoadScenario, RefusesWrongNames) {
                   {"acquisition_time\"\nuav = \"uav1\"\nsensor = \"camera\"",
                    "time_required\"\nuav = \"uav1\"", 97, "kind"},
                   {"\"red_box\"]", "\"blue_box\"]", 7, "anchors"},
+                  {"[\"blue_box\", \"red_box\"]", "[]", 88, "kind"},
                   {"worlds/room.sdf", "worlds/rom.sdf", 3, "world"},
                   {"profiles/fog.toml", "profiles/frog.toml", 74, "profile"},
                   {"targets/slow.toml", "targets/slaw.toml", 79, "target"}});

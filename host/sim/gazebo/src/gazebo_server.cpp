@@ -154,9 +154,10 @@ Duration GazeboServer::start_limit() const {
 void GazeboServer::look() const {
   if (run_.stop.stop_requested()) throw Error(ErrorCode::kSetup, "interrupted by the user");
   if (Steady::now() - started_ < limit_) return;
-  throw Error(ErrorCode::kSetup,
-              fmt::format("gzserver has not come up in {:g} s (see {}); if it needs longer, set {}",
-                          to_seconds(limit_), run_.log.string(), kStartLimit));
+  throw Error(
+      ErrorCode::kSetup,
+      fmt::format("gzserver did not start within {:g} s (see {}); if it needs longer, set {}",
+                  to_seconds(limit_), run_.log.string(), kStartLimit));
 }
 
 GazeboLog GazeboServer::whole_log() const {

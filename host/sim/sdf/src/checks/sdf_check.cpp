@@ -330,8 +330,7 @@ class Walk {
     if (name == "tether:multirotor") {
       return "is ignored: the scenario places the UAVs, not the world";
     }
-    if (name.starts_with("tether:"))
-      return "is not an element that Tether knows in a <" + parent + ">; ignored";
+    if (name.starts_with("tether:")) return "is not a known element of <" + parent + ">; ignored";
     if (name == "sensor") return "is not on a UAV; left out";
     // External simulators read the world themselves, but receive the UAVs from here.
     const bool is_for_all = purpose_ == SdfPurpose::kUav;

@@ -85,7 +85,7 @@ void mend_inertia(const SdfSource& source, const sdf::ElementPtr& inertial,
     refuse(source, inertia,
            "has moments that no body can have (ixx, iyy, izz: " + three_numbers(moments) +
                " kg m^2): all must be positive, and none larger than the sum of the other two. "
-               "Correct them, or use --tolerant to mend them");
+               "Correct them, or let --tolerant correct them");
   }
   // A little more, because of rounding.
   const double added = missing_moment(matrix) * (1.0 + 1e-6);

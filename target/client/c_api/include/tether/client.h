@@ -12,7 +12,7 @@
 ///
 /// **Time** is int64_t nanoseconds. ET is the SUT's execution time: it advances while the SUT
 /// computes, and is stopped while a call is held. ST is simulated time; measurements carry ST.
-/// Under the barrier, a call that returns at ET t has met the world of ST t.
+/// Under the barrier, a call that returns at ET t has observed the world at ST t.
 ///
 /// **Units and frames**: lengths are metres, angles radians; yaw is counter-clockwise seen from
 /// above. W: world (east, north, up). B: body (ahead, left, up). H: heading (W turned by the UAV's
@@ -162,7 +162,7 @@ void tether_disconnect(tether_vehicle* vehicle) TETHER_NOEXCEPT;
 
 /// Whether the SUT runs under tether-exec, which measures all its threads and processes together.
 /// @param vehicle  the UAV
-/// @return 1 if so; 0 if not, or if `vehicle` is NULL. Never blocks.
+/// @return 1 if it does; 0 if not, or if `vehicle` is NULL. Never blocks.
 int32_t tether_is_concurrent(const tether_vehicle* vehicle) TETHER_NOEXCEPT;
 
 /// @}
@@ -435,7 +435,7 @@ tether_status tether_subscribe_range(tether_vehicle* vehicle, const char* sensor
                                      tether_subscription** out) TETHER_NOEXCEPT;
 /// Whether measurements still arrive. Never blocks.
 /// @param subscription  the subscription
-/// @return TETHER_OK if so; else why none will arrive, for instance TETHER_RUN_ENDED
+/// @return TETHER_OK if they do; else why none will arrive, for instance TETHER_RUN_ENDED
 tether_status tether_subscription_status(const tether_subscription* subscription) TETHER_NOEXCEPT;
 /// Ends a subscription. After the return no callback runs, except one that calls this itself. Must
 /// be called before tether_disconnect(). @param subscription  the subscription, or NULL
@@ -456,8 +456,8 @@ tether_status tether_command_velocity(tether_vehicle* vehicle, double ahead_m_s,
 /// @param vehicle  the UAV  @return ET [ns]; 0 if `vehicle` is NULL
 int64_t tether_now(const tether_vehicle* vehicle) TETHER_NOEXCEPT;
 
-/// Waits in simulation: ET and ST move by the duration, wall time by what the simulator needs. An
-/// @ref interaction. Use it instead of the operating system's sleeps, which count as computing.
+/// Waits in simulation: ET and ST advance by the duration. An @ref interaction. Use it instead of
+/// the operating system's sleeps, which count as computing, or with a CPU clock not at all.
 /// @param vehicle  the UAV  @param duration_ns  [ns]; not above 0: returns at once
 /// @return TETHER_OK or an @ref interaction error
 tether_status tether_sleep_for(tether_vehicle* vehicle, int64_t duration_ns) TETHER_NOEXCEPT;

@@ -10,9 +10,9 @@ extern "C" {
 
 /// @defgroup c_radio Radio
 /// @ingroup c_api
-/// Messages between the programs of the UAVs. Whether and when one arrives is up to the scenario's
-/// radio. Messages arrive in the order of time; those of one instant in
-/// the order of UAVs in the scenario, and of one UAV in the order in which it sent them.
+/// Messages between the programs of the UAVs. The scenario's radio determines whether and when a
+/// message arrives. Messages arrive in the order of time; those of one instant in the order of UAVs
+/// in the scenario, and those of one UAV in the order in which it sent them.
 /// @{
 
 /// Number of the other UAVs. @param vehicle  the UAV  @return the number; 0 if `vehicle` is NULL

@@ -1,0 +1,60 @@
+#include "options/complaint.h"
+
+#include <string_view>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <tether/base/suggest.h>
+
+namespace tether::app {
+
+namespace {
+
+/// The command that was given last: the program itself if there is none.
+const CLI::App& innermost(const CLI::App& app) {
+  const auto chosen = app.get_subcommands();
+  return chosen.empty() ? app : innermost(*chosen.front());
+}
+
+/// "tether run".
+std::string command_words(const CLI::App& command) {
+  const CLI::App* parent = command.get_parent();
+  return parent ? command_words(*parent) + " " + command.get_name() : command.get_name();
+}
+
+/// First a word that is neither a command, an option nor an argument, with the nearest one that is.
+std::string what_is_wrong(const CLI::App& command, const CLI::ParseError& error) {
+  const std::vector<std::string> rest = command.remaining();
+  const auto subcommands = command.get_subcommands([](const CLI::App*) { return true; });
+  std::vector<std::string> known;
+  for (const CLI::App* sub : subcommands) known.push_back(sub->get_name());
+  for (const CLI::Option* option : command.get_options())
+    for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+  const std::vector<std::string_view> candidates(known.begin(), known.end());
+  for (const std::string& word : rest) {
+    const std::string given = word.substr(0, word.find('='));
+    if (const std::string_view near = nearest(given, candidates); !near.empty())
+      return fmt::format("unknown {} '{}'; did you mean '{}'?",
+                         given.starts_with('-') ? "option" : "command", given, near);
+  }
+  if (rest.empty() && error.get_name() == "RequiredError" && !subcommands.empty())
+    return "no command is given.";
+  if (rest.empty()) return fmt::format("{}.", error.what());
+  return fmt::format("unexpected {} '{}'.",
+                     rest.front().starts_with('-') ? "option"
+                     : subcommands.empty()         ? "argument"
+                                                   : "command",
+                     rest.front());
+}
+
+}  // namespace
+
+std::string complaint(const CLI::App& program, const CLI::ParseError& error) {
+  const CLI::App& command = innermost(program);
+  return fmt::format("{} For help, type: {} --help", what_is_wrong(command, error),
+                     command_words(command));
+}
+
+}  // namespace tether::app
