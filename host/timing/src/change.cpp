@@ -52,6 +52,7 @@ StageChange change_of(const std::string& stage, const Samples& now, const Sample
 
 std::string percent(double share) {
   const std::string text = fixed(share * 100.0, 0);
+  if (text == "-0") return "0";
   return share > 0.0 && text != "0" ? "+" + text : text;
 }
 
