@@ -10,8 +10,8 @@
 namespace tether::system_test {
 namespace {
 
-const std::vector<std::string> kTrials = {"face/quick/seed-0001", "face/slow/seed-0001",
-                                          "face/quick/seed-0002", "face/slow/seed-0002"};
+const std::vector<std::string> kRepeated = {"face/quick/seed-0001", "face/slow/seed-0001",
+                                            "face/quick/seed-0002", "face/slow/seed-0002"};
 
 constexpr const char* kConditions = R"([[condition]]
 name = "quick"
@@ -28,7 +28,7 @@ computing_ms = 30.5
 )";
 
 /// The face-anchor task for tests, under scripted conditions and with a start that differs by seed.
-void write_campaign(const std::filesystem::path& folder) {
+void write_repeated(const std::filesystem::path& folder) {
   const auto file = write_face_scenario(folder, {{"yaw_deg = -12.0",
                                                   "yaw_deg = -12.0\n"
                                                   "yaw_spread_deg = 2.0"}});
@@ -42,7 +42,7 @@ void write_campaign(const std::filesystem::path& folder) {
 
 class CampaignRepeat : public testing::Test {
  protected:
-  CampaignRepeat() { write_campaign(folder_.path()); }
+  CampaignRepeat() { write_repeated(folder_.path()); }
 
   void run_into(const std::string& out, const std::vector<std::string>& options = {}) const {
     std::vector<std::string> words = {"campaign", folder_ / "campaign.toml", "--out",
@@ -61,7 +61,7 @@ class CampaignRepeat : public testing::Test {
     return text.substr(0, text.find("\"this_run\": {"));
   }
   void expect_same(const std::string& a, const std::string& b) const {
-    for (const std::string& name : kTrials) {
+    for (const std::string& name : kRepeated) {
       EXPECT_EQ(result(a, name), result(b, name)) << name;
       EXPECT_TRUE(timeless_record(trial(a, name)) == timeless_record(trial(b, name)))
           << name << ": the records differ";
@@ -77,10 +77,10 @@ TEST_F(CampaignRepeat, IsTheSameToTheByte) {
   expect_same("a", "jobs");
 
   // Seeds and conditions do make a difference, and the SUT did fly.
-  for (std::size_t i = 1; i < kTrials.size(); ++i)
-    EXPECT_NE(read_result(trial("a", kTrials[0]))["metrics"],
-              read_result(trial("a", kTrials[i]))["metrics"]);
-  const auto slow = read_result(trial("a", kTrials[1]));
+  for (std::size_t i = 1; i < kRepeated.size(); ++i)
+    EXPECT_NE(read_result(trial("a", kRepeated[0]))["metrics"],
+              read_result(trial("a", kRepeated[i]))["metrics"]);
+  const auto slow = read_result(trial("a", kRepeated[1]));
   EXPECT_EQ(slow["clock"], "scripted");
   EXPECT_EQ(slow["computing_s"], 0.0305);
   EXPECT_EQ(slow["suts"][0]["clock"], "scripted");

@@ -29,9 +29,9 @@ void PrintTo(const StruckSut& struck, std::ostream* out) {
   *out << struck.mode;
 }
 
-class AtEachPhase : public RunTest, public testing::WithParamInterface<StruckSut> {};
+class SutAtEachPhase : public RunTest, public testing::WithParamInterface<StruckSut> {};
 
-TEST_P(AtEachPhase, AStruckSutIsNamed) {
+TEST_P(SutAtEachPhase, AStruckSutIsNamed) {
   const auto& [mode, failure, recorded_end] = GetParam();
   expect_failed(run(flight(mode, {"--real-time-factor", "1"},
                            {{"hang_limit_s = 2", "hang_limit_s = 2\nconnect_limit_s = 5"}})),
@@ -70,7 +70,7 @@ const StruckSut kStruckSuts[] = {
     {"stop_reply_half", {"sut_hung", {}}, "sut_hung"},
 };
 
-INSTANTIATE_TEST_SUITE_P(Phases, AtEachPhase, testing::ValuesIn(kStruckSuts),
+INSTANTIATE_TEST_SUITE_P(Phases, SutAtEachPhase, testing::ValuesIn(kStruckSuts),
                          [](const auto& struck) { return struck.param.mode; });
 
 // ---- Past the time limit

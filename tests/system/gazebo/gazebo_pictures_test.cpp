@@ -14,7 +14,7 @@ using namespace std::chrono_literals;
 using std::filesystem::path;
 namespace protocol = sim::protocol;
 
-const path kSource = TETHER_SOURCE_DIR;
+const path kRepository = TETHER_SOURCE_DIR;
 constexpr int kWidth_px = 640;
 constexpr int kHeight_px = 480;
 
@@ -24,7 +24,7 @@ protocol::VisualMaterial black_material(const std::string& visual, double alpha)
   material.model = "panes";
   material.link = "link";
   material.visual = visual;
-  material.texture = (kSource / "data/models/textures/brick.png").string();
+  material.texture = (kRepository / "data/models/textures/brick.png").string();
   material.alpha = alpha;
   return material;
 }
@@ -32,7 +32,7 @@ protocol::VisualMaterial black_material(const std::string& visual, double alpha)
 protocol::Open open_glass() {
   protocol::Open open;
   open.world_name = "glass";
-  open.world_file = (kSource / "tests/system/data/glass.sdf").string();
+  open.world_file = (kRepository / "tests/system/data/glass.sdf").string();
   open.step = 1ms;
   open.uavs.push_back({"uav1",
                        "<sdf version='1.6'><model name='uav1'><pose>0 0 1 0 0 0</pose>"

@@ -331,7 +331,7 @@ TEST_F(GazeboPluginTest, EndsAtAnInterrupt) {
   server.process().signal(SIGINT);
   const auto reply = connection->receive_reply(20s);
   ASSERT_FALSE(reply);
-  EXPECT_EQ(reply.failure().kind, Failure::Kind::kDisconnected);
+  EXPECT_EQ(reply.failure().kind, tether::Failure::Kind::kDisconnected);
   EXPECT_FALSE(server.process().wait(20s).timed_out);
 }
 

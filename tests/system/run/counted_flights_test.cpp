@@ -11,16 +11,16 @@
 namespace tether::system_test {
 namespace {
 
-struct Flight {
+struct CountedCase {
   std::string scenario;
   std::vector<Substitution> changes{};
 };
 
-void PrintTo(const Flight& flight, std::ostream* stream) {
+void PrintTo(const CountedCase& flight, std::ostream* stream) {
   *stream << flight.scenario;
 }
 
-class CountedFlight : public testing::TestWithParam<Flight> {
+class CountedFlight : public testing::TestWithParam<CountedCase> {
  protected:
   /// The run's folder.
   std::filesystem::path fly(const std::string& name, const std::vector<std::string>& launcher) {
@@ -52,12 +52,12 @@ TEST_P(CountedFlight, IsTheSameToTheByteUnderAnyLoad) {
 }
 
 // Cut short: the first images have all kinds of work.
-const std::vector<Flight> kFlights = {
+const std::vector<CountedCase> kCountedCases = {
     {"face_anchor", {{"\ntime_limit_s = 60", "\ntime_limit_s = 0.7"}}},
     {"move_forward", {{"\ntime_limit_s = 90", "\ntime_limit_s = 0.7"}}},
     {"mission", {{"\ntime_limit_s = 60", "\ntime_limit_s = 0.7"}}}};
 
-INSTANTIATE_TEST_SUITE_P(Shipped, CountedFlight, testing::ValuesIn(kFlights),
+INSTANTIATE_TEST_SUITE_P(Shipped, CountedFlight, testing::ValuesIn(kCountedCases),
                          [](const auto& one) { return one.param.scenario; });
 
 /// The numbers in the first line of `text` that begins with `label`.

@@ -68,12 +68,12 @@ class Host {
 };
 
 /// What is done in the place of this answer.
-using Act = std::function<void(Host&, protocol::Reply)>;
+using SimulatorAct = std::function<void(Host&, protocol::Reply)>;
 
 /// Serves one host; its answer to Open, or to the Advance up to kFailsAt, is the act.
 class HostileSimulator {
  public:
-  HostileSimulator(bool at_once, Act act)
+  HostileSimulator(bool at_once, SimulatorAct act)
       : listener_(link::listen_on_tcp({"127.0.0.1", 0}).value()),
         thread_([this, at_once, act = std::move(act)] { serve(at_once, act); }) {}
   ~HostileSimulator() {
@@ -85,7 +85,7 @@ class HostileSimulator {
   }
 
  private:
-  void serve(bool at_once, const Act& act) const {
+  void serve(bool at_once, const SimulatorAct& act) const {
     link::Descriptor socket(::accept(listener_.get(), nullptr, nullptr));
     if (!socket.is_open()) return;
     Host host(std::move(socket));
@@ -109,7 +109,7 @@ class HostileSimulator {
 
 struct Misdeed {
   std::string name;
-  Act act;
+  SimulatorAct act;
   std::string reason;  ///< part of the run's
 };
 

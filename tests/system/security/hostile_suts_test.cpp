@@ -85,7 +85,7 @@ constexpr std::int64_t kFlown = 1000 * kMs;
 
 // ---- Each violation, and what the reason names
 
-struct Misdeed {
+struct SutMisdeed {
   std::string name;
   /// `next`: the sequence number of the next request, which may be stamped kFlown.
   std::function<void(RawPeer&, std::uint64_t next)> act;
@@ -93,18 +93,19 @@ struct Misdeed {
   std::string end = "sut_lost";
 };
 
-void PrintTo(const Misdeed& misdeed, std::ostream* out) {
+void PrintTo(const SutMisdeed& misdeed, std::ostream* out) {
   *out << misdeed.name;
 }
 
-Misdeed sends(const std::string& name, const std::function<link::Message(std::uint64_t)>& message,
-              const std::string& reason) {
+SutMisdeed sends(const std::string& name,
+                 const std::function<link::Message(std::uint64_t)>& message,
+                 const std::string& reason) {
   return {name, [=](RawPeer& sut, std::uint64_t next) { sut.write(message(next)); }, reason};
 }
 
 // The rules themselves: common/link/test/validate_test.cpp,
 // host/coordinator/test/validator_test.cpp.
-const Misdeed kMisdeeds[] = {
+const SutMisdeed kSutMisdeeds[] = {
     sends(
         "LargestStamp", [](auto next) { return command(next, kMax); }, ""),
     sends(
@@ -196,7 +197,7 @@ void join(RawPeer& sut, const std::string& uav = "") {
   EXPECT_TRUE(welcome && std::holds_alternative<link::Welcome>(*welcome));
 }
 
-class HostileSut : public testing::TestWithParam<Misdeed> {
+class HostileSut : public testing::TestWithParam<SutMisdeed> {
  protected:
   TempFolder folder_;
 };
@@ -228,7 +229,7 @@ TEST_P(HostileSut, EndsItsRunByName) {
   EXPECT_EQ(audit_code(folder_ / "out"), 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Misdeeds, HostileSut, testing::ValuesIn(kMisdeeds),
+INSTANTIATE_TEST_SUITE_P(Misdeeds, HostileSut, testing::ValuesIn(kSutMisdeeds),
                          [](const auto& misdeed) { return misdeed.param.name; });
 
 // ---- That leave early
