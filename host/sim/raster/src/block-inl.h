@@ -199,27 +199,19 @@ inline void light_block(const Part& part, Block& b) {
 }
 
 // The same with textures. Calls `use` with the place in the block of each vector with triangles,
-// with their colours, and with what returns their opacities.
-template <class Use>
+// and with their pixels, which have their opacities if these are wanted.
+template <bool kWithAlpha = false, class Use>
 HWY_INLINE void shade_block(const Part& part, Block& b, const Use& use) {
   const PreparedScene& scene = part.shading.scene;
   light_block(part, b);
-  for (const Block::Run& run : b.runs()) {
-    if (!run.is_textured) continue;
-    for (const std::size_t at : b.places(run)) {
-      Cell& c = b.cell(at);
-      look_up(scene, load(c.level), load(c.u), load(c.v), c.lookups);
-    }
-  }
   const V one = set(1.0F);
   for (const Block::Run& run : b.runs()) {
     for (const std::size_t at : b.places(run)) {
       const Cell& c = b.cell(at);
-      Texel texel{{one, one, one}, one};
-      if (run.is_textured) texel = sample(scene, load(c.level), c.lookups);
-      use(at, scaled(colour(c), texel.colour), [&]() HWY_ATTR {
-        return Mul(of_material(run, c, scene.materials[0].alpha), texel.alpha);
-      });
+      const V alpha = kWithAlpha ? of_material(run, c, scene.materials[0].alpha) : one;
+      use(at,
+          pixels(colour(c), alpha,
+                 run.is_textured ? sample(scene, load(c.level), load(c.u), load(c.v)) : white()));
     }
   }
 }
@@ -227,6 +219,10 @@ HWY_INLINE void shade_block(const Part& part, Block& b, const Use& use) {
 HWY_INLINE void load_ids(const Part& part, Block& b) {
   const auto* const first = part.ids.id.data() + part.first_pixel();
   std::copy_n(first, static_cast<std::size_t>(part.rows) * kTile_px, b.ids.data());
+}
+
+HWY_INLINE VU background_of(const Part& part) {
+  return packed(colour(part.shading.scene.background), set(1.0F));
 }
 
 HWY_INLINE M is_empty(const Block& b, std::size_t at) {

@@ -76,9 +76,10 @@ struct MaterialRow {
   float texture_width, texture_height;  ///< of its largest size
 };
 
-/// Two texels of a texture, one below the other; R in the lowest byte.
+/// Two texels of a texture, one below the other. Of each channel, the upper one and the lower one:
+/// 128 less than their bytes.
 struct TexelPair {
-  std::uint32_t upper, lower;
+  std::array<std::array<std::int8_t, 2>, 4> channels;
 };
 
 /// One size of a texture: rows of pairs from row −1 on, of its columns from −1 to its width. So the

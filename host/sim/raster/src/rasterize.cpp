@@ -359,6 +359,14 @@ void rasterize_all(const Layer& layer, const Lens& lens, const Tile& tile,
 
 }  // namespace
 
+void clear_on(float farthest, TileIds& ids) {
+  const V depth = hn::Set(D(), farthest);
+  for (std::size_t i = 0; i < kTilePixels; i += hn::Lanes(D())) {
+    hn::Store(hn::Zero(DU()), DU(), ids.id.data() + i);
+    hn::Store(depth, D(), ids.inverse_depth.data() + i);
+  }
+}
+
 void rasterize_nearest_on(const Layer& layer, const Lens& lens, const Tile& tile,
                           std::span<const std::uint32_t> triangles, TileIds& ids) {
   rasterize_all(layer, lens, tile, triangles, Nearest{ids});
@@ -376,8 +384,13 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tether::raster {
 
+HWY_EXPORT(clear_on);
 HWY_EXPORT(rasterize_nearest_on);
 HWY_EXPORT(rasterize_next_on);
+
+void clear(double farthest_m, TileIds& ids) {
+  HWY_DYNAMIC_DISPATCH(clear_on)(static_cast<float>(1.0 / farthest_m), ids);
+}
 
 void rasterize_nearest(const Layer& layer, const Lens& lens, const Tile& tile,
                        std::span<const std::uint32_t> triangles, TileIds& ids) {
@@ -386,8 +399,7 @@ void rasterize_nearest(const Layer& layer, const Lens& lens, const Tile& tile,
 
 bool rasterize_next(const Layer& layer, const Lens& lens, const Tile& tile,
                     std::span<const std::uint32_t> triangles, const TileIds& last, TileIds& next) {
-  next.id.fill(0);
-  next.inverse_depth.fill(std::numeric_limits<float>::infinity());
+  clear(0.0, next);
   HWY_DYNAMIC_DISPATCH(rasterize_next_on)(layer, lens, tile, triangles, last, next);
   return std::any_of(next.id.begin(), next.id.end(), [](std::uint32_t id) { return id != 0; });
 }

@@ -22,6 +22,9 @@ struct TileIds {
   alignas(64) std::array<float, kTilePixels> inverse_depth;
 };
 
+/// No triangle anywhere, as if at this depth.
+void clear(double farthest_m, TileIds& ids);
+
 /// Keeps, for each pixel, the nearest of `triangles` and of the present one; of equally near ones,
 /// the first.
 void rasterize_nearest(const Layer& layer, const Lens& lens, const Tile& tile,

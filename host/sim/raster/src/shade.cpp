@@ -18,23 +18,13 @@ HWY_BEFORE_NAMESPACE();
 namespace tether::raster::HWY_NAMESPACE {
 namespace {
 
-HWY_INLINE VI to_byte(V share) {
-  return nearest(Mul(share, set(255.0F)));
-}
-HWY_INLINE VU packed(VI r, VI g, VI b) {
-  return hn::BitCast(DU(), hn::Or(r, hn::Or(hn::ShiftLeft<8>(g), hn::ShiftLeft<16>(b))));
-}
-HWY_INLINE VU packed(const Colour& c) {
-  return packed(to_byte(c.r), to_byte(c.g), to_byte(c.b));
-}
-
-// The light of a colour, rounded as bytes are: an exposed picture of a still scene is the plain
-// one.
-HWY_INLINE V light_of(const LightTable& table, V share) {
-  return hn::GatherIndex(D(), table.light.data(), to_byte(share));
-}
-HWY_INLINE Colour light_of(const LightTable& table, const Colour& c) {
-  return {light_of(table, c.r), light_of(table, c.g), light_of(table, c.b)};
+// The light of pixels. An exposed picture of a still scene is the plain one.
+HWY_INLINE Colour light_of(const LightTable& table, VU pixels) {
+  const auto light = [&](VU shifted) HWY_ATTR {
+    const VU byte = And(shifted, hn::Set(DU(), 0xFF));
+    return hn::GatherIndex(D(), table.light.data(), hn::BitCast(DI(), byte));
+  };
+  return {light(pixels), light(hn::ShiftRight<8>(pixels)), light(hn::ShiftRight<16>(pixels))};
 }
 HWY_INLINE VI byte_of_light(const LightTable& table, V light) {
   const DI di;
@@ -47,16 +37,28 @@ HWY_INLINE VU packed(const LightTable& table, const Colour& light) {
                 byte_of_light(table, light.b));
 }
 
-HWY_INLINE Colour load(const TileColours& from, std::size_t at) {
+HWY_INLINE Colour load(const TileLight& from, std::size_t at) {
   const D d;
   return {hn::Load(d, from.r.data() + at), hn::Load(d, from.g.data() + at),
           hn::Load(d, from.b.data() + at)};
 }
-HWY_INLINE void store(const Colour& c, TileColours& to, std::size_t at) {
+HWY_INLINE void store(const Colour& c, TileLight& to, std::size_t at) {
   const D d;
   hn::Store(c.r, d, to.r.data() + at);
   hn::Store(c.g, d, to.g.data() + at);
   hn::Store(c.b, d, to.b.data() + at);
+}
+
+// Pixels under others, by the opacity of these.
+HWY_INLINE VU mixed(VU below, VU above) {
+  const VU byte = hn::Set(DU(), 0xFF);
+  const V opacity = Mul(to_float(hn::BitCast(DI(), hn::ShiftRight<24>(above))), set(1.0F / 255.0F));
+  const auto channel = [&](VU from, VU to) HWY_ATTR {
+    return nearest(mix(to_float(hn::BitCast(DI(), And(from, byte))),
+                       to_float(hn::BitCast(DI(), And(to, byte))), opacity));
+  };
+  return packed(channel(below, above), channel(hn::ShiftRight<8>(below), hn::ShiftRight<8>(above)),
+                channel(hn::ShiftRight<16>(below), hn::ShiftRight<16>(above)));
 }
 
 // A number of the triangles that several pixels see; 0: none.
@@ -73,7 +75,7 @@ HWY_INLINE VI of_facets(const Layer& layer, VU ids, const std::uint32_t Facet::*
 class Mean {
  public:
   Mean(const Part& part, std::span<const Layer> layers, std::span<const TileIds> ids, Block& block,
-       TileColours& light, TilePixels& pixels)
+       TileLight& light, TilePixels& pixels)
       : part_(part),
         layers_(layers),
         ids_(ids),
@@ -123,6 +125,8 @@ class Mean {
     store(sum, light_, part_.first_pixel() + at);
   }
 
+  Colour background_light() const { return light_of(part_.shading.table, background_of(part_)); }
+
   // Counts the pixels that see the same as in the middle layer, and shades the others.
   void add_layer(std::size_t k) {
     const Part part{part_.shading, layers_[k], part_.tile, ids_[k], part_.first_row, part_.rows};
@@ -138,7 +142,7 @@ class Mean {
       put(hn::VecFromMask(DI(), other), other_, at);
       hn::Store(hn::IfThenElseZero(hn::RebindMask(DU(), other), ids), DU(), b_.ids.data() + at);
     });
-    const Colour background = light_of(part_.shading.table, colour(part_.shading.scene.background));
+    const Colour background = background_light();
     const auto add_here = [&](std::size_t at, const Colour& light) HWY_ATTR {
       const M other = float_mask(hn::Ne(get(other_, at), whole(0)));
       if (hn::AllFalse(D(), other)) return;
@@ -147,7 +151,7 @@ class Mean {
     for_each_vector(part_, [&](std::size_t at) HWY_ATTR {
       if (hn::AllTrue(D(), is_empty(b_, at))) add_here(at, background);
     });
-    shade_block(part, b_, [&](std::size_t at, const Colour& own, const auto&) HWY_ATTR {
+    shade_block(part, b_, [&](std::size_t at, VU own) HWY_ATTR {
       add_here(at, select(is_empty(b_, at), background, light_of(part_.shading.table, own)));
     });
   }
@@ -156,7 +160,7 @@ class Mean {
     load_ids(part_, b_);
     light_block(part_, b_);
     const LightTable& table = part_.shading.table;
-    const Colour background = light_of(table, colour(part_.shading.scene.background));
+    const Colour background = background_light();
     const auto put_middle = [&](std::size_t at, const Colour& light) HWY_ATTR {
       add(light, Mul(to_float(get(count_, at)), set(share_)), at);
       put_pixels(packed(table, load(light_, part_.first_pixel() + at)), at);
@@ -169,8 +173,7 @@ class Mean {
         const Cell& c = b_.cell(at);
         const Way way = run.is_textured ? way_at(run, c, at) : resting(c);
         if (is_still(way, at)) {
-          const Colour own = colour(c);
-          put_pixels(packed(run.is_textured ? scaled(own, texel_at(c, way.u, way.v)) : own), at);
+          put_pixels(pixels_at(run, c, way.u, way.v), at);
         } else {
           put_middle(at, select(is_empty(b_, at), background, along(run, way, c)));
         }
@@ -185,13 +188,15 @@ class Mean {
     return hn::AllTrue(DI(), And(always, once)) && hn::AllFalse(D(), is_empty(b_, at));
   }
 
-  // Texture coordinates in the layers `of`, which differ from pixel to pixel.
+  // Texture coordinates in the layers `of`, which differ from pixel to pixel. `u` and `v` have
+  // those of the middle layer.
   void coordinates_in(VI of, M wanted, std::size_t at, V& u, V& v) const {
     M rest = wanted;
     for (std::size_t k = 0; !hn::AllFalse(D(), rest) && k < layers_.size(); ++k) {
       const M here = And(rest, float_mask(hn::Eq(of, whole(static_cast<std::int32_t>(k)))));
       if (hn::AllFalse(D(), here)) continue;
       rest = hn::AndNot(here, rest);
+      if (k == middle_) continue;
       const Layer& layer = layers_[k];
       const Part part{part_.shading, layer, part_.tile, ids_[k], part_.first_row, part_.rows};
       const Pixels p = Sight(part).pixels(at);
@@ -246,26 +251,25 @@ class Mean {
     return way;
   }
 
-  Colour texel_at(const Cell& c, V u, V v) const {
-    Lookups lookups;
-    look_up(part_.shading.scene, load(c.level), u, v, lookups);
-    return sample(part_.shading.scene, load(c.level), lookups).colour;
+  VU pixels_at(const Block::Run& run, const Cell& c, V u, V v) const {
+    const V one = set(1.0F);
+    if (!run.is_textured) return pixels(colour(c), one, white());
+    return pixels(colour(c), one, sample(part_.shading.scene, load(c.level), u, v));
   }
 
   // The mean light along the way.
   Colour along(const Block::Run& run, const Way& way, const Cell& c) const {
-    const Colour own = colour(c);
-    if (!run.is_textured) return light_of(part_.shading.table, own);
+    const LightTable& table = part_.shading.table;
+    if (!run.is_textured) return light_of(table, pixels_at(run, c, way.u, way.v));
     const V step = Div(set(1.0F), to_float(way.taps));
     Colour sum{set(0.0F), set(0.0F), set(0.0F)};
     for (std::int32_t i = 0;; ++i) {
       const M counts = float_mask(hn::Gt(way.taps, whole(i)));
       if (hn::AllFalse(D(), counts)) return sum;
       const V place = Sub(Mul(set(static_cast<float>(i) + 0.5F), step), set(0.5F));
-      const Colour texel =
-          texel_at(c, Add(way.u, Mul(way.du, place)), Add(way.v, Mul(way.dv, place)));
-      add_to(sum, light_of(part_.shading.table, scaled(own, texel)),
-             hn::IfThenElseZero(counts, step));
+      const VU here =
+          pixels_at(run, c, Add(way.u, Mul(way.du, place)), Add(way.v, Mul(way.dv, place)));
+      add_to(sum, light_of(table, here), hn::IfThenElseZero(counts, step));
     }
   }
 
@@ -276,7 +280,7 @@ class Mean {
   std::span<const Layer> layers_;
   std::span<const TileIds> ids_;
   Block& b_;
-  TileColours& light_;
+  TileLight& light_;
   TilePixels& pixels_;
   std::size_t middle_;
   float share_;
@@ -293,13 +297,13 @@ void shade_on(const Shading& shading, const Layer& layer, const Tile& tile, cons
   Block b;
   for_each_part(shading, layer, tile, ids, [&](const Part& part) HWY_ATTR {
     load_ids(part, b);
-    const VU background = packed(colour(shading.scene.background));
+    const VU background = background_of(part);
     const auto put = [&](std::size_t at, VU pixel) HWY_ATTR {
       hn::Store(pixel, DU(), pixels.data() + part.first_pixel() + at);
     };
     for_each_vector(part, [&](std::size_t at) HWY_ATTR { put(at, background); });
-    shade_block(part, b, [&](std::size_t at, const Colour& c, const auto&) HWY_ATTR {
-      put(at, hn::IfThenElse(hn::RebindMask(DU(), is_empty(b, at)), background, packed(c)));
+    shade_block(part, b, [&](std::size_t at, VU own) HWY_ATTR {
+      put(at, hn::IfThenElse(hn::RebindMask(DU(), is_empty(b, at)), background, own));
     });
   });
 }
@@ -307,7 +311,7 @@ void shade_on(const Shading& shading, const Layer& layer, const Tile& tile, cons
 void shade_mean_on(const Shading& shading, std::span<const Layer> layers, const Tile& tile,
                    std::span<const TileIds> ids, TilePixels& pixels) {
   Block b;
-  TileColours light;
+  TileLight light;
   const std::size_t middle = layers.size() / 2;
   for_each_part(shading, layers[middle], tile, ids[middle], [&](const Part& part) HWY_ATTR {
     Mean(part, layers, ids, b, light, pixels).add_up();
@@ -315,41 +319,29 @@ void shade_mean_on(const Shading& shading, std::span<const Layer> layers, const 
 }
 
 void shade_over_on(const Shading& shading, const Layer& layer, const Tile& tile, const TileIds& ids,
-                   bool with_background, TileColours& colours) {
+                   TilePixels& pixels) {
   Block b;
   for_each_part(shading, layer, tile, ids, [&](const Part& part) HWY_ATTR {
     load_ids(part, b);
-    const auto put = [&](std::size_t at, const Colour& c)
-                         HWY_ATTR { store(c, colours, part.first_pixel() + at); };
-    if (with_background) {
-      for_each_vector(part,
-                      [&](std::size_t at) HWY_ATTR { put(at, colour(shading.scene.background)); });
-    }
-    shade_block(part, b, [&](std::size_t at, const Colour& c, const auto& alpha) HWY_ATTR {
-      const Colour before = load(colours, part.first_pixel() + at);
-      const Colour after = with_background ? c : mix(before, c, alpha());
-      put(at, select(is_empty(b, at), before, after));
+    shade_block<true>(part, b, [&](std::size_t at, VU own) HWY_ATTR {
+      std::uint32_t* const to = pixels.data() + part.first_pixel() + at;
+      const VU before = hn::Load(DU(), to);
+      const VU after = mixed(before, own);
+      hn::Store(hn::IfThenElse(hn::RebindMask(DU(), is_empty(b, at)), before, after), DU(), to);
     });
   });
 }
 
-void add_light_on(const LightTable& table, const TileColours& colours, int layers,
-                  TileColours& light) {
+void add_light_on(const LightTable& table, const TilePixels& pixels, int layers, TileLight& light) {
   const V share = set(1.0F / static_cast<float>(layers));
   for (std::size_t i = 0; i < kTilePixels; i += lanes()) {
     Colour sum = load(light, i);
-    add_to(sum, light_of(table, load(colours, i)), share);
+    add_to(sum, light_of(table, hn::Load(DU(), pixels.data() + i)), share);
     store(sum, light, i);
   }
 }
 
-void encode_colours_on(const TileColours& colours, TilePixels& pixels) {
-  for (std::size_t i = 0; i < kTilePixels; i += lanes()) {
-    hn::Store(packed(load(colours, i)), DU(), pixels.data() + i);
-  }
-}
-
-void encode_light_on(const LightTable& table, const TileColours& light, TilePixels& pixels) {
+void encode_light_on(const LightTable& table, const TileLight& light, TilePixels& pixels) {
   for (std::size_t i = 0; i < kTilePixels; i += lanes()) {
     hn::Store(packed(table, load(light, i)), DU(), pixels.data() + i);
   }
@@ -402,7 +394,6 @@ HWY_EXPORT(shade_on);
 HWY_EXPORT(shade_mean_on);
 HWY_EXPORT(shade_over_on);
 HWY_EXPORT(add_light_on);
-HWY_EXPORT(encode_colours_on);
 HWY_EXPORT(encode_light_on);
 HWY_EXPORT(store_row_on);
 HWY_EXPORT(find_entities_on);
@@ -419,20 +410,15 @@ void shade_mean(const Shading& shading, std::span<const Layer> layers, const Til
 }
 
 void shade_over(const Shading& shading, const Layer& layer, const Tile& tile, const TileIds& ids,
-                bool with_background, TileColours& colours) {
-  HWY_DYNAMIC_DISPATCH(shade_over_on)(shading, layer, tile, ids, with_background, colours);
+                TilePixels& pixels) {
+  HWY_DYNAMIC_DISPATCH(shade_over_on)(shading, layer, tile, ids, pixels);
 }
 
-void add_light(const LightTable& table, const TileColours& colours, int layers,
-               TileColours& light) {
-  HWY_DYNAMIC_DISPATCH(add_light_on)(table, colours, layers, light);
+void add_light(const LightTable& table, const TilePixels& pixels, int layers, TileLight& light) {
+  HWY_DYNAMIC_DISPATCH(add_light_on)(table, pixels, layers, light);
 }
 
-void encode_colours(const TileColours& colours, TilePixels& pixels) {
-  HWY_DYNAMIC_DISPATCH(encode_colours_on)(colours, pixels);
-}
-
-void encode_light(const LightTable& table, const TileColours& light, TilePixels& pixels) {
+void encode_light(const LightTable& table, const TileLight& light, TilePixels& pixels) {
   HWY_DYNAMIC_DISPATCH(encode_light_on)(table, light, pixels);
 }
 

@@ -22,11 +22,11 @@ struct Shading {
   const LightTable& table = light_table();
 };
 
-/// A tile's pixels, R in the lowest byte; or a number of each.
+/// A tile's pixels, R in the lowest byte, the highest one unused; or a number of each.
 struct alignas(64) TilePixels : std::array<std::uint32_t, kTilePixels> {};
 
-/// A tile's colours, 0..1, or its light, 0..LightTable::kWhite.
-struct TileColours {
+/// A tile's light, 0..LightTable::kWhite.
+struct TileLight {
   alignas(64) std::array<float, kTilePixels> r, g, b;
 };
 
@@ -40,15 +40,13 @@ void shade(const Shading& shading, const Layer& layer, const Tile& tile, const T
 void shade_mean(const Shading& shading, std::span<const Layer> layers, const Tile& tile,
                 std::span<const TileIds> ids, TilePixels& pixels);
 
-/// Mixes the triangles of `ids` into `colours` by their opacity, or draws opaque ones on the
-/// background.
+/// Mixes the triangles of `ids` into `pixels` by their opacity.
 void shade_over(const Shading& shading, const Layer& layer, const Tile& tile, const TileIds& ids,
-                bool with_background, TileColours& colours);
-/// Adds the light of colours, of one out of `layers` layers.
-void add_light(const LightTable& table, const TileColours& colours, int layers, TileColours& light);
-/// The pixels of colours, and of light.
-void encode_colours(const TileColours& colours, TilePixels& pixels);
-void encode_light(const LightTable& table, const TileColours& light, TilePixels& pixels);
+                TilePixels& pixels);
+/// Adds the light of pixels, of one out of `layers` layers.
+void add_light(const LightTable& table, const TilePixels& pixels, int layers, TileLight& light);
+/// The pixels of light.
+void encode_light(const LightTable& table, const TileLight& light, TilePixels& pixels);
 
 /// Three bytes for each of a row's pixels.
 void store_row(const std::uint32_t* pixels, int count, std::uint8_t* rgb);

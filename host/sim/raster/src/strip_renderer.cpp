@@ -116,10 +116,8 @@ void StripRenderer::draw_tile(const Job& job, const Tile& tile, std::size_t list
 }
 
 void StripRenderer::rasterize(const Job& job, const Tile& tile, std::size_t list) {
-  const auto farthest = static_cast<float>(1.0 / job.view.far_m);
   for (std::size_t i = 0; i < layers_.size(); ++i) {
-    ids_[i].id.fill(0);
-    ids_[i].inverse_depth.fill(farthest);
+    clear(job.view.far_m, ids_[i]);
     rasterize_nearest(layers_[i], job.lens, tile, layers_[i].opaque[list], ids_[i]);
   }
 }
@@ -127,17 +125,13 @@ void StripRenderer::rasterize(const Job& job, const Tile& tile, std::size_t list
 void StripRenderer::shade_with_transparent(const Job& job, const Tile& tile, std::size_t list) {
   const Shading shading{job.scene, job.lens, job.shadows};
   const auto layers = static_cast<int>(layers_.size());
-  light_ = {};
+  if (layers > 1) light_ = {};
   for (std::size_t i = 0; i < layers_.size(); ++i) {
-    shade_over(shading, layers_[i], tile, ids_[i], true, colours_);
+    shade(shading, layers_[i], tile, ids_[i], pixels_);
     add_transparent(shading, layers_[i], tile, list, ids_[i]);
-    if (layers > 1) add_light(shading.table, colours_, layers, light_);
+    if (layers > 1) add_light(shading.table, pixels_, layers, light_);
   }
-  if (layers > 1) {
-    encode_light(shading.table, light_, pixels_);
-  } else {
-    encode_colours(colours_, pixels_);
-  }
+  if (layers > 1) encode_light(shading.table, light_, pixels_);
 }
 
 // From the farthest to the nearest, for each pixel.
@@ -145,7 +139,7 @@ void StripRenderer::add_transparent(const Shading& shading, const Layer& layer, 
                                     std::size_t list, const TileIds& opaque) {
   last_ = opaque;
   while (rasterize_next(layer, shading.lens, tile, layer.transparent[list], last_, next_)) {
-    shade_over(shading, layer, tile, next_, false, colours_);
+    shade_over(shading, layer, tile, next_, pixels_);
     std::swap(last_, next_);
   }
 }

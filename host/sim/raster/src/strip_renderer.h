@@ -48,8 +48,7 @@ class StripRenderer {
   std::vector<TileIds> ids_;  ///< of each layer, in the tile
   TileIds last_{};
   TileIds next_{};
-  TileColours colours_{};
-  TileColours light_{};
+  TileLight light_{};
   TilePixels pixels_{};
   Moment moment_;
 };

@@ -163,13 +163,6 @@ HWY_INLINE Normal normal_at(const Facet& f, const Spot& s) {
 template <class T>
 using Lanes = std::array<T, hn::MaxLanes(D())>;
 
-// Where some pixels are on one size of a texture.
-struct Lookup {
-  alignas(64) Lanes<std::int32_t> pair;  // of PreparedScene::texels: the left one of four texels
-  Lanes<std::int32_t> x, y;              // between them, in the lowest 8 bits
-};
-using Lookups = std::array<Lookup, 2>;  // on a level and the next
-
 // The pixels of a vector.
 struct Cell {
   alignas(64) Lanes<float> r, g, b;  // under its lights, before the texture; at most 1
@@ -177,7 +170,6 @@ struct Cell {
   Lanes<float> texels_per_pixel2;    // of its largest size, squared; at least 1
   Lanes<std::int32_t> level;         // 256 times the row of PreparedScene::levels
   Lanes<std::int32_t> material;      // rows of PreparedScene::materials, unless the run is flat
-  Lookups lookups;
 };
 
 // Some rows of a tile, step by step: each step goes over all pixels, a vector at a time. Pixels
@@ -228,6 +220,17 @@ HWY_INLINE void store(const Colour& colour, Cell& c) {
   store(colour.r, c.r);
   store(colour.g, c.g);
   store(colour.b, c.b);
+}
+
+HWY_INLINE VI to_byte(V share) {
+  return nearest(Mul(share, set(255.0F)));
+}
+HWY_INLINE VU packed(VI r, VI g, VI b) {
+  return hn::BitCast(DU(), hn::Or(r, hn::Or(hn::ShiftLeft<8>(g), hn::ShiftLeft<16>(b))));
+}
+HWY_INLINE VU packed(const Colour& c, V alpha) {
+  return hn::Or(packed(to_byte(c.r), to_byte(c.g), to_byte(c.b)),
+                hn::BitCast(DU(), hn::ShiftLeft<24>(to_byte(alpha))));
 }
 
 // A number of each pixel's material, and that of the first material.

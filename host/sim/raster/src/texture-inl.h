@@ -11,8 +11,6 @@
 #include <array>
 #include <cstdint>
 
-#include <hwy/cache_control.h>
-
 // Textures: trilinear, repeated, in the bytes' own values.
 HWY_BEFORE_NAMESPACE();
 namespace tether::raster::HWY_NAMESPACE {
@@ -71,47 +69,55 @@ HWY_INLINE VU twice(std::uint32_t number) {
   return hn::Set(DU(), number << 16U | number);
 }
 
-// Four channels of up to 255·256: red and blue in the halves of one number, green and alpha in
-// those of the other.
-struct Blend {
-  VU red_blue, green_alpha;
+// Where some pixels are on one size of a texture, and the weights of the four texels there.
+struct Places {
+  alignas(64) Lanes<std::int32_t> pair;  // of PreparedScene::texels: the left one of two
+  VU rows;     // 255 in all: of the upper texels in the lowest byte, of the lower ones in the next
+  VU columns;  // of the left ones in the lower half, of the right ones in the upper one: 2^14 in
+               // all, or the level's share of that
 };
 
-// The upper byte of each half.
-HWY_INLINE VU upper_bytes(VU pair) {
+// Half of the sum over rows and columns, for texels of 128 less than their bytes. A little more (a
+// 32nd of a byte), so that white leaves a colour as it is when it is rounded.
+inline constexpr std::int16_t kTexelZero = 128 * 255 / 2 + 4;
+
 #if HWY_TARGET == HWY_SCALAR
-  return And(hn::ShiftRight<8>(pair), twice(0xFFU));
-#else
-  const hn::Repartition<std::uint16_t, DU> dh;
-  return hn::BitCast(DU(), hn::ShiftRight<8>(hn::BitCast(dh, pair)));
-#endif
+// The product of fractions of 2^15, rounded.
+inline std::int32_t product(std::int32_t a, std::int32_t b) {
+  return (a * b + 0x4000) >> 15;
 }
-
-HWY_INLINE void add_texel(Blend& sum, VU texel, VU weight) {
-  sum.red_blue = Add(sum.red_blue, times(And(texel, twice(0xFFU)), weight));
-  sum.green_alpha = Add(sum.green_alpha, times(upper_bytes(texel), weight));
-}
-
-// The four texels around some places.
-struct Square {
-  VU upper_left, lower_left, upper_right, lower_right;
+struct Texels {
+  std::array<std::int32_t, 4> channels;  // from 0 to kTexelWhite
 };
 
-#if HWY_TARGET == HWY_SCALAR
-HWY_INLINE Square square_at(const TexelPair* pairs, const std::int32_t* places) {
-  const TexelPair& left = pairs[*places];
-  const TexelPair& right = pairs[*places + 1];
-  const DU du;
-  return {hn::Set(du, left.upper), hn::Set(du, left.lower), hn::Set(du, right.upper),
-          hn::Set(du, right.lower)};
+inline Texels mixed(const TexelPair* pairs, const Places& own, const Places* next) {
+  Texels sum{};
+  sum.channels.fill(kTexelZero);
+  for (std::size_t level = 0; level < (next == nullptr ? 1U : 2U); ++level) {
+    const Places& from = level == 0 ? own : *next;
+    const std::uint32_t rows = hn::GetLane(from.rows);
+    const std::uint32_t columns = hn::GetLane(from.columns);
+    for (unsigned side = 0; side < 2; ++side) {
+      const TexelPair& pair = pairs[from.pair[0] + static_cast<std::int32_t>(side)];
+      for (std::size_t i = 0; i < 4; ++i) {
+        const int row_sum = pair.channels[i][0] * static_cast<int>(rows & 0xFFU) +
+                            pair.channels[i][1] * static_cast<int>(rows >> 8U);
+        sum.channels[i] += product(row_sum, static_cast<int>(columns >> (16 * side) & 0xFFFFU));
+      }
+    }
+  }
+  return sum;
 }
 #else
+using DH = hn::Repartition<std::int16_t, DI>;
+using VH = hn::Vec<DH>;
+
 // Two pairs for every fourth pixel, by one load each: instructions that gather are no quicker, and
 // those of AVX-512 slower.
 template <class DB>
 HWY_INLINE hn::Vec<DB> every_fourth(DB d, const TexelPair* pairs, const std::int32_t* at) {
   if constexpr (hn::MaxLanes(DB()) == 4) {
-    return hn::LoadU(d, &pairs[*at].upper);
+    return hn::LoadU(d, reinterpret_cast<const std::uint32_t*>(pairs + *at));
   } else {
     const hn::Half<DB> half;
     return hn::Combine(d, every_fourth(half, pairs, at + hn::Lanes(half)),
@@ -119,90 +125,72 @@ HWY_INLINE hn::Vec<DB> every_fourth(DB d, const TexelPair* pairs, const std::int
   }
 }
 
-HWY_INLINE Square square_at(const TexelPair* pairs, const std::int32_t* places) {
-  const DU d;
-  const hn::Repartition<std::uint64_t, DU> d2;
-  const VU a = every_fourth(d, pairs, places);
-  const VU b = every_fourth(d, pairs, places + 1);
-  const VU c = every_fourth(d, pairs, places + 2);
-  const VU e = every_fourth(d, pairs, places + 3);
-  const auto left_ab = hn::BitCast(d2, hn::InterleaveLower(d, a, b));
-  const auto left_ce = hn::BitCast(d2, hn::InterleaveLower(d, c, e));
-  const auto right_ab = hn::BitCast(d2, hn::InterleaveUpper(d, a, b));
-  const auto right_ce = hn::BitCast(d2, hn::InterleaveUpper(d, c, e));
-  return {hn::BitCast(d, hn::InterleaveLower(d2, left_ab, left_ce)),
-          hn::BitCast(d, hn::InterleaveUpper(d2, left_ab, left_ce)),
-          hn::BitCast(d, hn::InterleaveLower(d2, right_ab, right_ce)),
-          hn::BitCast(d, hn::InterleaveUpper(d2, right_ab, right_ce))};
+// Of neighbouring bytes: those of `texels`, with a sign, times those of `weights`, without one, and
+// their sum. @pre It fits into 16 bits.
+HWY_INLINE VH sums_of_pairs(VU weights, VU texels) {
+#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
+  return VH{_mm512_maddubs_epi16(weights.raw, texels.raw)};
+#elif HWY_TARGET == HWY_AVX2
+  return VH{_mm256_maddubs_epi16(weights.raw, texels.raw)};
+#elif HWY_TARGET == HWY_SSE4 || HWY_TARGET == HWY_SSSE3
+  return VH{_mm_maddubs_epi16(weights.raw, texels.raw)};
+#else
+  const DH d;
+  const VH w = hn::BitCast(d, weights);
+  const VH t = hn::BitCast(d, texels);
+  const hn::RebindToUnsigned<DH> du;
+  const VH second = hn::BitCast(d, hn::ShiftRight<8>(hn::BitCast(du, w)));
+  return Add(Mul(And(w, hn::Set(d, 0xFF)), hn::ShiftRight<8>(hn::ShiftLeft<8>(t))),
+             Mul(second, hn::ShiftRight<8>(t)));
+#endif
+}
+
+// Four numbers for each 128 bits of a vector.
+template <std::uint32_t kA, std::uint32_t kB, std::uint32_t kC, std::uint32_t kD>
+HWY_INLINE VU four() {
+  alignas(64) static constexpr std::array<std::uint32_t, kMaxLanes> kAll{
+      kA, kB, kC, kD, kA, kB, kC, kD, kA, kB, kC, kD, kA, kB, kC, kD};
+  return hn::Load(DU(), kAll.data());
+}
+
+// The channels of some pixels, from 0 to kTexelWhite: of the first two of every four pixels, and of
+// the other two.
+struct Texels {
+  VH first, second;
+};
+
+// Of every fourth pixel from the one with the number kNumber on: the four channels of the left
+// texels and of the right ones, weighted.
+template <std::uint32_t kNumber>
+HWY_INLINE VH weighted(const TexelPair* pairs, const Places& from) {
+  constexpr std::uint32_t kRows = 0x01000100U + 0x04040404U * kNumber;
+  constexpr std::uint32_t kRight = kRows + 0x02020202U;
+  const VU rows = hn::TableLookupBytes(from.rows, four<kRows, kRows, kRows, kRows>());
+  const VU columns = hn::TableLookupBytes(from.columns, four<kRows, kRows, kRight, kRight>());
+  const VU texels = every_fourth(DU(), pairs, from.pair.data() + kNumber);
+  return hn::MulFixedPoint15(sums_of_pairs(rows, texels), hn::BitCast(DH(), columns));
+}
+template <std::uint32_t kNumber>
+HWY_INLINE VH weighted(const TexelPair* pairs, const Places& own, const Places* next) {
+  const VH one = weighted<kNumber>(pairs, own);
+  return next == nullptr ? one : Add(one, weighted<kNumber>(pairs, *next));
+}
+
+// The left texels and the right ones of two pixels.
+HWY_INLINE VH sum_of_columns(VH a, VH b) {
+  const hn::Repartition<std::uint64_t, DH> d2;
+  const auto a2 = hn::BitCast(d2, a);
+  const auto b2 = hn::BitCast(d2, b);
+  return Add(Add(hn::BitCast(DH(), hn::InterleaveLower(d2, a2, b2)),
+                 hn::BitCast(DH(), hn::InterleaveUpper(d2, a2, b2))),
+             hn::Set(DH(), kTexelZero));
+}
+
+HWY_INLINE Texels mixed(const TexelPair* pairs, const Places& own, const Places* next) {
+  return {sum_of_columns(weighted<0>(pairs, own, next), weighted<1>(pairs, own, next)),
+          sum_of_columns(weighted<2>(pairs, own, next), weighted<3>(pairs, own, next))};
 }
 #endif
-
-// One size of a texture for each pixel.
-struct Level {
-  VI first_pair, stride;
-  V width, height;
-};
-
-HWY_INLINE Level level_at(const PreparedScene& scene, VI row) {
-  Level all{whole(0), whole(0), set(0.0F), set(0.0F)};
-  const VU number = hn::BitCast(DU(), Add(row, whole(1)));
-  for_each_number(number, [&](std::size_t at, hn::Mask<DI> same, auto is_first) HWY_ATTR {
-    const LevelRow& one = scene.levels[at];
-    const Level level{whole(one.first_pair), whole(one.stride), set(one.width_256ths),
-                      set(one.height_256ths)};
-    if (is_first.value) {
-      all = level;
-      return;
-    }
-    const M mask = float_mask(same);
-    all = {hn::IfThenElse(same, level.first_pair, all.first_pair),
-           hn::IfThenElse(same, level.stride, all.stride),
-           hn::IfThenElse(mask, level.width, all.width),
-           hn::IfThenElse(mask, level.height, all.height)};
-  });
-  return all;
-}
-
-// Of `u` and `v` within 0 and 1.
-HWY_INLINE void look_up(const Level& level, V u, V v, Lookup& to) {
-  const VI x = Sub(nearest(Mul(u, level.width)), whole(128));
-  const VI y = Sub(nearest(Mul(v, level.height)), whole(128));
-  const VI row = Mul(hn::ShiftRight<8>(y), level.stride);
-  store(Add(Add(level.first_pair, hn::ShiftRight<8>(x)), row), to.pair);
-  store(x, to.x);
-  store(y, to.y);
-}
-
-// The four weights sum to 256 exactly.
-HWY_INLINE Blend bilinear(const TexelPair* pairs, const Lookup& from) {
-  const VI x = load(from.x);
-  const VI y = load(from.y);
-  const Square square = square_at(pairs, from.pair.data());
-  const VU right = twice(And(x, whole(0xFF)));
-  const VU below = twice(And(y, whole(0xFF)));
-  const VU both = And(hn::ShiftRight<8>(Add(times(right, below), twice(128U))), twice(0xFFU));
-  Blend sum{hn::Zero(DU()), hn::Zero(DU())};
-  add_texel(sum, square.upper_left, Add(Sub(Sub(twice(256U), right), below), both));
-  add_texel(sum, square.upper_right, Sub(right, both));
-  add_texel(sum, square.lower_left, Sub(below, both));
-  add_texel(sum, square.lower_right, both);
-  return sum;
-}
-
-// The channels, 0..1.
-struct Texel {
-  Colour colour;
-  V alpha;
-};
-inline constexpr float kTexelScale = 1.0F / 65280.0F;
-static_assert(65280.0F * kTexelScale == 1.0F, "white leaves a surface as it is");
-
-HWY_INLINE V low_half(VU pair) {
-  return to_float(hn::BitCast(DI(), And(pair, hn::Set(DU(), 0xFFFFU))));
-}
-HWY_INLINE V high_half(VU pair) {
-  return to_float(hn::BitCast(DI(), hn::ShiftRight<16>(pair)));
-}
 
 HWY_INLINE V squared_length(V u, V v, V width, V height) {
   const V x = Mul(u, width);
@@ -225,40 +213,98 @@ HWY_INLINE VI level_of(const MaterialRow& m, const TexturePoint& p) {
              whole(256 * m.first_level));
 }
 
-// Of numbers up to 2^16 − 256.
-HWY_INLINE VU mix(VU a, VU b, VU share) {
-  return Add(Sub(a, times_high(a, share)), times_high(b, share));
+// One size of a texture for each pixel.
+struct Level {
+  VI first_pair, stride;
+  V width, height;
+};
+
+// The levels `row`, and those that are `next` rows on.
+HWY_INLINE Level level_at(const PreparedScene& scene, VI row, std::size_t next) {
+  const LevelRow* const rows = scene.levels.data() + next;
+  const std::int32_t first = hn::GetLane(row);
+  if (hn::AllTrue(DI(), hn::Eq(row, whole(first)))) {
+    const LevelRow& one = rows[first];
+    return {whole(one.first_pair), whole(one.stride), set(one.width_256ths),
+            set(one.height_256ths)};
+  }
+  constexpr std::int32_t kNumbers = sizeof(LevelRow) / sizeof(std::int32_t);
+  const VI at = Mul(row, whole(kNumbers));
+  return {hn::GatherIndex(DI(), &rows->first_pair, at), hn::GatherIndex(DI(), &rows->stride, at),
+          hn::GatherIndex(D(), &rows->width_256ths, at),
+          hn::GatherIndex(D(), &rows->height_256ths, at)};
 }
 
-// Whether a level is looked at alone.
-HWY_INLINE bool is_one(VI level) {
-  return hn::AllTrue(DI(), hn::Eq(And(level, whole(0xFF)), whole(0)));
+// Of `u` and `v` within 0 and 1. `share` is that of the level, in 1/256.
+HWY_INLINE Places places_at(const Level& level, V u, V v, VU share) {
+  const VI x = Sub(nearest(Mul(u, level.width)), whole(128));
+  const VI y = Sub(nearest(Mul(v, level.height)), whole(128));
+  const VI row = Mul(hn::ShiftRight<8>(y), level.stride);
+  Places places;
+  store(Add(Add(level.first_pair, hn::ShiftRight<8>(x)), row), places.pair);
+  const VU byte = hn::Set(DU(), 0xFF);
+  const VU below = And(hn::BitCast(DU(), y), byte);
+  const VU right = hn::ShiftRight<2>(times(And(hn::BitCast(DU(), x), byte), share));
+  places.rows = Add(Sub(hn::ShiftLeft<8>(below), below), byte);
+  places.columns = hn::Or(Sub(hn::ShiftLeft<6>(share), right), hn::ShiftLeft<16>(right));
+  return places;
 }
 
-// Finds the texels of some places, on a level and the next.
-HWY_INLINE void look_up(const PreparedScene& scene, VI level, V u, V v, Lookups& to) {
+// Without a texture: what the white one gives, so that it does not matter whether the pixels beside
+// have textures.
+inline constexpr std::int16_t kTexelWhite = kTexelZero + 2 * ((127 * 255 * 8192 + 0x4000) >> 15);
+HWY_INLINE Texels white() {
+#if HWY_TARGET == HWY_SCALAR
+  return {{kTexelWhite, kTexelWhite, kTexelWhite, kTexelWhite}};
+#else
+  return {hn::Set(DH(), kTexelWhite), hn::Set(DH(), kTexelWhite)};
+#endif
+}
+
+// What some pixels see of their textures. `level`: 256 times the row of PreparedScene::levels.
+HWY_INLINE Texels sample(const PreparedScene& scene, VI level, V u, V v) {
+  const TexelPair* const pairs = scene.texels.data();
   const V u_repeated = Sub(u, hn::Floor(u));
   const V v_repeated = Sub(v, hn::Floor(v));
   const VI row = hn::ShiftRight<8>(level);
-  look_up(level_at(scene, row), u_repeated, v_repeated, to[0]);
-  if (is_one(level)) return;
-  look_up(level_at(scene, Add(row, whole(1))), u_repeated, v_repeated, to[1]);
+  const VU share = And(hn::BitCast(DU(), level), hn::Set(DU(), 0xFF));
+  const Places own =
+      places_at(level_at(scene, row, 0), u_repeated, v_repeated, Sub(hn::Set(DU(), 256U), share));
+  if (hn::AllTrue(DU(), hn::Eq(share, hn::Zero(DU())))) return mixed(pairs, own, nullptr);
+  const Places next = places_at(level_at(scene, row, 1), u_repeated, v_repeated, share);
+  return mixed(pairs, own, &next);
 }
 
-HWY_INLINE Texel sample(const PreparedScene& scene, VI level, const Lookups& from) {
-  const TexelPair* const texels = scene.texels.data();
-  Blend b = bilinear(texels, from[0]);
-  if (!is_one(level)) {
-    const Blend next = bilinear(texels, from[1]);
-    const VU share = twice(hn::ShiftLeft<8>(And(level, whole(0xFF))));
-    b = {mix(b.red_blue, next.red_blue, share), mix(b.green_alpha, next.green_alpha, share)};
+// A number within 0 and 1, in 1/32767, in the lower half.
+HWY_INLINE VU share_of_32767(V x) {
+  const V shifted = Add(Mul(x, set(32767.0F)), set(12582912.0F));
+  return And(hn::BitCast(DU(), shifted), hn::Set(DU(), 0xFFFF));
+}
+
+// The pixels of surfaces with textures. The channels become bytes only here.
+HWY_INLINE VU pixels(const Colour& c, V alpha, const Texels& t) {
+#if HWY_TARGET == HWY_SCALAR
+  const std::array light{c.r, c.g, c.b, alpha};
+  std::uint32_t result = 0;
+  for (unsigned i = 0; i < 4; ++i) {
+    const auto of_light = static_cast<std::int32_t>(hn::GetLane(share_of_32767(light[i])));
+    result |= static_cast<std::uint32_t>(product(product(t.channels[i], of_light), 257)) << (8 * i);
   }
-  const V scale = set(kTexelScale);
-  return {{Mul(low_half(b.red_blue), scale), Mul(low_half(b.green_alpha), scale),
-           Mul(high_half(b.red_blue), scale)},
-          Mul(high_half(b.green_alpha), scale)};
+  return hn::Set(DU(), result);
+#else
+  const VU red_green = hn::Or(share_of_32767(c.r), hn::ShiftLeft<16>(share_of_32767(c.g)));
+  const VU blue_alpha = hn::Or(share_of_32767(c.b), hn::ShiftLeft<16>(share_of_32767(alpha)));
+  const VH to_byte = hn::Set(DH(), 257);
+  const auto bytes = [&](VH texels, VU light) HWY_ATTR {
+    return hn::BitCast(
+        DU(), hn::MulFixedPoint15(hn::MulFixedPoint15(texels, hn::BitCast(DH(), light)), to_byte));
+  };
+  const VU first = bytes(t.first, hn::InterleaveLower(DU(), red_green, blue_alpha));
+  const VU second = bytes(t.second, hn::InterleaveUpper(DU(), red_green, blue_alpha));
+  return hn::TableLookupBytes(hn::Or(first, hn::ShiftLeft<8>(second)),
+                              four<0x06040200U, 0x0E0C0A08U, 0x07050301U, 0x0F0D0B09U>());
+#endif
 }
-
 }  // namespace
 }  // namespace tether::raster::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -67,6 +67,17 @@ Image make_smaller(const Image& from) {
   return to;
 }
 
+TexelPair pair_of(std::uint32_t upper, std::uint32_t lower) {
+  TexelPair pair{};
+  for (unsigned i = 0; i < 4; ++i) {
+    const auto less = [&](std::uint32_t texel) {
+      return static_cast<std::int8_t>(static_cast<int>(texel >> (8 * i) & 0xFFU) - 128);
+    };
+    pair.channels[i] = {less(upper), less(lower)};
+  }
+  return pair;
+}
+
 void add_level(const Image& image, PreparedScene& scene) {
   const int stride = image.width + 2;
   const auto texel = [&](int x, int y) {
@@ -80,7 +91,7 @@ void add_level(const Image& image, PreparedScene& scene) {
                           256.0F * static_cast<float>(image.height)});
   for (int y = -1; y < image.height; ++y) {
     for (int x = -1; x <= image.width; ++x) {
-      scene.texels.push_back({texel(x, y), texel(x, y + 1)});
+      scene.texels.push_back(pair_of(texel(x, y), texel(x, y + 1)));
     }
   }
 }

@@ -11,7 +11,7 @@ TEST(Texture, IsAveragedExactlyAtOddSizes) {
   PreparedScene scene;
   EXPECT_EQ(add_texture({3, 1, {0, 0, 0, 255, 90, 0, 0, 255, 240, 0, 0, 255}}, scene), 2);
   ASSERT_EQ(scene.levels.size(), 2U);
-  EXPECT_EQ(scene.texels.back().lower & 0xFFU, 110U);
+  EXPECT_EQ(scene.texels.back().channels[0][1], 110 - 128);
 }
 
 TEST(Texture, WeightsPixelsByHowMuchOfThemIsCovered) {
@@ -22,21 +22,21 @@ TEST(Texture, WeightsPixelsByHowMuchOfThemIsCovered) {
   const LevelRow& half = scene.levels[1];
   ASSERT_EQ(half.width_256ths, 512.0F);
   const TexelPair* const pairs = scene.texels.data() + half.first_pair;
-  EXPECT_EQ(pairs[0].upper & 0xFFU, 18U);
-  EXPECT_EQ(pairs[1].upper & 0xFFU, 42U);
+  EXPECT_EQ(pairs[0].channels[0][0], 18 - 128);
+  EXPECT_EQ(pairs[1].channels[0][0], 42 - 128);
 }
 
 TEST(Texture, RepeatsColumnsAndRowsAcrossItsEdges) {
   PreparedScene scene;
   add_texture({2, 2, {1, 0, 0, 0, 2, 0, 0, 0, 3, 0, 0, 0, 4, 0, 0, 0}}, scene);
-  std::vector<std::uint32_t> upper;
-  std::vector<std::uint32_t> lower;
+  std::vector<int> upper;
+  std::vector<int> lower;
   for (std::size_t i = 0; i < 12; ++i) {
-    upper.push_back(scene.texels[i].upper);
-    lower.push_back(scene.texels[i].lower);
+    upper.push_back(scene.texels[i].channels[0][0] + 128);
+    lower.push_back(scene.texels[i].channels[0][1] + 128);
   }
-  EXPECT_EQ(upper, (std::vector<std::uint32_t>{4, 3, 4, 3, 2, 1, 2, 1, 4, 3, 4, 3}));
-  EXPECT_EQ(lower, (std::vector<std::uint32_t>{2, 1, 2, 1, 4, 3, 4, 3, 2, 1, 2, 1}));
+  EXPECT_EQ(upper, (std::vector<int>{4, 3, 4, 3, 2, 1, 2, 1, 4, 3, 4, 3}));
+  EXPECT_EQ(lower, (std::vector<int>{2, 1, 2, 1, 4, 3, 4, 3, 2, 1, 2, 1}));
   EXPECT_EQ(scene.levels[0].first_pair, 5);
 }
 
