@@ -10,7 +10,7 @@
 #include <tether/sim_raster/scene.h>
 
 // Pictures of a furnished, textured room with four lamps. `images` is how many there are for each
-// second of CPU time; with threads, of wall time.
+// second of CPU time.
 namespace tether::raster {
 namespace {
 
@@ -141,7 +141,6 @@ struct Options {
   bool is_distorted = false;
   bool antialias = false;
   bool with_depth = false;
-  int threads = 1;
 };
 
 // A flight at 0.5 m/s that turns at 0.1 rad/s, with cameras side by side.
@@ -151,7 +150,7 @@ Pose camera_pose(double t_s, int camera = 0) {
 }
 
 void images(benchmark::State& state, const Options& options) {
-  Renderer renderer(scene(options.is_large), options.threads);
+  Renderer renderer(scene(options.is_large));
   View view;
   view.camera = uav::CameraModel::from_horizontal_fov(options.width_px, options.height_px, 1.0472);
   if (options.is_distorted) {
@@ -236,8 +235,6 @@ const Options kDistortedExposed{640, 480, false, 0.010, 0.020, true};
 const Options kAntialiased{640, 480, false, 0.0, 0.0, false, true};
 const Options kWithDepth{640, 480, false, 0.0, 0.0, false, false, true};
 
-const Options kTwoThreads{640, 480, false, 0.0, 0.0, false, false, false, 2};
-
 BENCHMARK_CAPTURE(images, 640x480, kPlain)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(images, 320x240, kSmallImage)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(images, 640x480_11000_triangles, kLarge)->Unit(benchmark::kMillisecond);
@@ -251,10 +248,6 @@ BENCHMARK_CAPTURE(images, distorted_exposed_10ms_rolling_20ms, kDistortedExposed
     ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(images, antialiased, kAntialiased)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(images, with_depth_and_entities, kWithDepth)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(images, 2_threads, kTwoThreads)
-    ->MeasureProcessCPUTime()
-    ->UseRealTime()
-    ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(cameras, stereo_pair, 2)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(cameras, four, 4)->Unit(benchmark::kMillisecond);
 

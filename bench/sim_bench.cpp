@@ -90,15 +90,16 @@ class Instructions {
 };
 
 // Images along a flight down the corridor, noise and all. `targets`: the processor's instructions
-// that may be used; 0: all.
-void images(benchmark::State& state, int width_px, int height_px, std::int64_t targets) {
+// that may be used; 0: all. `helpers`: threads that help to draw.
+void images(benchmark::State& state, int width_px, int height_px, std::int64_t targets,
+            int helpers = 0) {
   const Instructions instructions(targets);
   World world = corridor();
   const std::size_t camera = camera_of(world);
   auto& model = std::get<CameraModel>(world.uavs[0].sensors[camera].model);
   model.intrinsics = uav::CameraModel::from_horizontal_fov(width_px, height_px,
                                                            model.intrinsics.horizontal_fov_rad());
-  const auto simulator = make_mujoco_simulator(world, print_warning);
+  const auto simulator = make_mujoco_simulator(world, print_warning, helpers);
   simulator->apply(0, {{0.5, 0.0, 0.0}, 0.1});
   Snapshot snapshot;
   simulator->capture(snapshot);
@@ -129,6 +130,16 @@ BENCHMARK(BM_images_640x480)->MeasureProcessCPUTime()->Unit(benchmark::kMillisec
 BENCHMARK(BM_images_320x240)->MeasureProcessCPUTime()->Unit(benchmark::kMillisecond);
 BENCHMARK(BM_images_640x480_avx2)->MeasureProcessCPUTime()->Unit(benchmark::kMillisecond);
 BENCHMARK(BM_images_320x240_avx2)->MeasureProcessCPUTime()->Unit(benchmark::kMillisecond);
+
+// The same images by wall time: on one thread, and with a thread that helps.
+void BM_images_640x480_alone(benchmark::State& state) {
+  images(state, 640, 480, 0);
+}
+void BM_images_640x480_helped(benchmark::State& state) {
+  images(state, 640, 480, 0, 1);
+}
+BENCHMARK(BM_images_640x480_alone)->UseRealTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(BM_images_640x480_helped)->UseRealTime()->Unit(benchmark::kMillisecond);
 
 // What shutter and lens cost: the images of two cameras in one place along the same flight, one
 // with them and one without. `times_plain` is how many times the CPU time the one takes.
