@@ -53,10 +53,14 @@ Interrupt::Interrupt() : signals_(make_pipe()) {
 }
 
 Interrupt::~Interrupt() {
+  stop_catching();
+  g_interrupt = nullptr;
+  if (watcher_.joinable()) end_thread();
+}
+
+void Interrupt::stop_catching() const {
   for (const int signal : {SIGINT, SIGTERM, SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_DFL);
   if (!ignores_hangup_) std::signal(SIGHUP, SIG_DFL);
-  g_interrupt = nullptr;
-  end_thread();
 }
 
 // In a copy of the process, the thread has already ended.
@@ -66,7 +70,12 @@ Interrupt::Pause::Pause()
 }
 
 Interrupt::Pause::~Pause() {
-  if (paused_ != nullptr) paused_->start();
+  if (paused_ == nullptr) return;
+  try {
+    paused_->start();
+  } catch (const Error&) {
+    paused_->stop_catching();
+  }
 }
 
 void Interrupt::start() try {

@@ -1,17 +1,30 @@
 #include "ahead_drawer.h"
 
 #include <algorithm>
+#include <system_error>
 #include <utility>
+
+#include <tether/base/error.h>
 
 namespace tether::sim {
 
 AheadDrawer::AheadDrawer(int threads, Draw draw) : draw_(std::move(draw)) {
-  for (int i = 0; i < threads; ++i) {
-    threads_.emplace_back([this, i] { serve(static_cast<std::size_t>(i)); });
+  try {
+    for (int i = 0; i < threads; ++i) {
+      threads_.emplace_back([this, i] { serve(static_cast<std::size_t>(i)); });
+    }
+  } catch (const std::system_error&) {
+    end();
+    throw Error(ErrorCode::kSetup,
+                "cannot start a thread that draws images: too little memory, or too many threads");
   }
 }
 
 AheadDrawer::~AheadDrawer() {
+  end();
+}
+
+void AheadDrawer::end() {
   {
     const std::lock_guard lock(mutex_);
     ends_ = true;

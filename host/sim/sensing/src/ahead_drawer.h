@@ -41,7 +41,7 @@ class AheadDrawer final : public raster::Helpers {
   /// Pictures of one sensor that are kept; an image may have 200 MB.
   static constexpr int kMostPerSensor = 2;
 
-  /// @pre `threads` ≥ 1.
+  /// @pre `threads` ≥ 1. @throws Error(kSetup) when a thread cannot be started.
   AheadDrawer(int threads, Draw draw);
   ~AheadDrawer() override;
 
@@ -80,6 +80,7 @@ class AheadDrawer final : public raster::Helpers {
     std::exception_ptr failure{};
   };
 
+  void end();
   void serve(std::size_t worker);
   void draw(Jobs::iterator job, std::size_t worker, std::unique_lock<std::mutex>& lock);
   Jobs::iterator drop(Jobs::iterator job);

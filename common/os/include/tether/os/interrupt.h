@@ -25,7 +25,8 @@ class Interrupt {
   std::stop_token token() const { return stop_.get_token(); }
 
   /// Without its thread while this lives: a copy of a process with several threads may do little.
-  /// Signals that arrive meanwhile are taken afterwards. Does nothing if there is no Interrupt.
+  /// Signals that arrive meanwhile are taken afterwards. If the thread cannot be started again,
+  /// later signals end the process. Does nothing if there is no Interrupt.
   class Pause {
    public:
     Pause();
@@ -40,6 +41,7 @@ class Interrupt {
  private:
   void start();
   void end_thread();
+  void stop_catching() const;
   void watch();
 
   Pipe signals_;  // a byte for each
