@@ -143,8 +143,8 @@ class Renderer::Work {
  private:
   // Memory for one strip at a time, which any renderer may use.
   static StripRenderer& scratch() {
-    thread_local const auto of_this_thread = std::make_unique<StripRenderer>();
-    return *of_this_thread;
+    thread_local StripRenderer of_this_thread;
+    return of_this_thread;
   }
 
   // Shadows are those of the middle of the window.
