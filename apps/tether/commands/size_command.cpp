@@ -4,6 +4,7 @@
 #include "options/junit_option.h"
 #include "options/refuse_option.h"
 #include "options/trial_options.h"
+#include "reading/file_kind.h"
 
 #include <algorithm>
 #include <cmath>
