@@ -62,9 +62,6 @@ HWY_INLINE VU times_high(VU a, VU b) {
 }
 
 // The same number, below 2^16, in both halves.
-HWY_INLINE VU twice(VI number) {
-  return hn::BitCast(DU(), hn::Or(number, hn::ShiftLeft<16>(number)));
-}
 HWY_INLINE VU twice(std::uint32_t number) {
   return hn::Set(DU(), number << 16U | number);
 }
