@@ -95,11 +95,11 @@ fs::path ShippedFiles::find(ShippedKind kind, const std::string& given) const {
     return path;
   const fs::path shipped = file_of(kind, given);
   if (fs::is_regular_file(shipped, ignored)) return shipped;
-  for (const Place& other : kPlaces)
-    if (fs::is_regular_file(data_ / other.folder / (given + other.extension), ignored))
+  for (std::size_t i = 0; i < kPlaces.size(); ++i)
+    if (fs::is_regular_file(file_of(static_cast<ShippedKind>(i), given), ignored))
       throw Error(ErrorCode::kUsage,
                   fmt::format("'{0}' is a shipped {1}, not a {2}. To use it, type: {3} {0}", given,
-                              other.name, place_of(kind).name, other.use))
+                              kPlaces[i].name, place_of(kind).name, kPlaces[i].use))
           .about(given);
   const auto files = list(kind);
   std::vector<std::string_view> names;
