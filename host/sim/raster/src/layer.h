@@ -17,21 +17,40 @@ namespace tether::raster {
 inline constexpr int kTile_px = 32;
 inline constexpr std::size_t kTilePixels = std::size_t{kTile_px} * kTile_px;
 
-/// The three edges of a triangle. It covers the pixels with a·x + b·y + c ≥ 0 for all three edges,
-/// x and y in kSubpixels. Exact: a pixel on an edge belongs to just one of the two triangles there.
+/// The 1/depth of a triangle as a plane over the picture [1/m]: value + along_x·(x−x_ref) +
+/// along_y·(y−y_ref), in pixels, and that of its corners.
+struct DepthPlane {
+  float x_ref, y_ref;
+  std::array<float, 3> plane;  ///< value, along_x, along_y
+  float low, high;
+};
+
+/// A triangle in the picture. It covers the pixels with a·x + b·y + c ≥ 0 for all three edges, x
+/// and y in kSubpixels. Exact: a pixel on an edge belongs to just one of the two triangles there.
 struct Coverage {
   std::array<std::int32_t, 3> a, b;
   std::array<std::int64_t, 3> c;
   PixelRect pixels;  ///< no other is covered
+  DepthPlane depth;
+  std::array<std::array<float, 3>, 3> corners;  ///< in C [m]
+  std::uint32_t primitive;  ///< the same triangle has the same number in all layers
+  std::uint32_t visual;     ///< of Layer::visuals
+  std::uint32_t triangle;   ///< of PreparedScene::triangles
 };
 
-/// The surface of a triangle as planes over the picture: p(x, y) = p0 + px·(x−x_ref) +
-/// py·(y−y_ref), in pixels. Texture coordinates are those of corner 1, and what is added to them.
+/// What the triangles of an instance share.
+struct PlacedVisual {
+  std::array<float, 9> rotation;  ///< from V to C, row by row
+  std::uint32_t first_look;
+  std::uint32_t material;
+  std::uint32_t entity;
+};
+
+/// The surface of a triangle as planes over the picture, like its depth. Texture coordinates are
+/// those of corner 1, and what is added to them.
 struct alignas(32) Facet {
-  float x_ref, y_ref;
-  std::array<float, 3> inverse_depth;  ///< 1/z: value, and change along x and y [1/m]
+  DepthPlane depth;
   std::array<float, 3> second, third;  ///< weights of the second and third corner, over z
-  float inverse_depth_low, inverse_depth_high;
   struct Coordinate {
     float first;                 ///< of corner 1
     std::array<float, 3> added;  ///< over z
@@ -44,9 +63,21 @@ struct alignas(32) Facet {
   std::array<std::array<float, 3>, 3> normal;  ///< in C: of corner 1; corners 2 and 3 less that
   std::int32_t is_flat;                        ///< −1: the normal is the same everywhere; else 0
   std::uint32_t material;
-  std::uint32_t primitive;  ///< the same triangle has the same number in all layers
-  std::uint32_t entity;
 };
+
+/// The edges of a triangle that part a rectangle's samples, as bits.
+struct Reach {
+  bool is_none;  ///< one edge is beyond them all
+  unsigned edges;
+};
+/// Of those in `edges` only: all samples are inside of the others.
+Reach reach(const Coverage& triangle, const FixedRect& rect, unsigned edges);
+
+/// The least and the most 1/depth over a rectangle [1/m].
+struct DepthRange {
+  float low, high;
+};
+DepthRange depth_range(const DepthPlane& depth, const FixedRect& rect);
 
 /// A light as the shading reads it, in C.
 struct LightRow {
@@ -79,14 +110,36 @@ struct Layer {
   Projection projection{};
   double offset_x_px = 0.0, offset_y_px = 0.0;  ///< how far things are moved, for antialiasing
 
-  std::vector<Coverage> coverage;  ///< filled by `place_triangles`
-  std::vector<Facet> facets;       ///< as many
+  std::vector<Coverage> coverage;  ///< filled by `place_triangles`, in the order of primitives
+  std::vector<PlacedVisual> visuals;
   /// Of each tile, those that may be seen in it: first the opaque ones.
   std::vector<std::vector<std::uint32_t>> opaque, transparent;
   std::vector<LightRow> lights;
   bool only_points = false;   ///< the lights are points without shadows
   bool any_specular = false;  ///< of the lights
+
+  /// Of what a pixel sees, by its id: 1 + a triangle's place in `coverage`, or 0.
+  std::uint32_t entity_of(std::uint32_t id) const {
+    return id == 0 ? 0 : visuals[coverage[id - 1].visual].entity;
+  }
+
+  /// Of each triangle, a number that it has in all layers of an exposure: 1 + its first place in
+  /// the middle layer, or, if it is not placed there, `first_own_key` + its place here.
+  std::vector<std::uint32_t> keys;
+  std::uint32_t first_own_key = 0;
+
+  /// Made when a triangle is shaded first: few of those of a layer are. Not safe from two threads.
+  /// Holds until the next triangles are placed.
+  const Facet& facet(const PreparedScene& scene, std::size_t triangle) const;
+  void clear_facets();
+
+ private:
+  mutable std::vector<std::uint32_t> facet_of_;  // 1 + the place in facets_ of each triangle's
+  mutable std::vector<Facet> facets_;
 };
+
+/// Sets the keys of all layers.
+void set_keys(std::span<Layer> layers);
 
 /// Rows of the picture that one worker draws at once.
 struct Strip {
@@ -94,16 +147,18 @@ struct Strip {
   int rows = 0;
 };
 
-/// Which visuals to place.
+/// What to place.
 struct Selection {
-  std::optional<std::size_t> hidden;  ///< not this body
-  bool only_casters = false;          ///< no visual that casts no shadow
-  bool only_fixed = false;            ///< no visual of a body
-  bool only_moving = false;           ///< only visuals of bodies
-  bool both_sides = false;            ///< back faces as well
+  static constexpr int kAll = std::numeric_limits<int>::max();
+  PixelRect pixels = {0, 0, kAll, kAll};  ///< only what these may see
+  std::optional<std::size_t> hidden;      ///< not this body
+  bool only_casters = false;              ///< no visual that casts no shadow
+  bool only_fixed = false;                ///< no visual of a body
+  bool only_moving = false;               ///< only visuals of bodies
+  bool both_sides = false;                ///< back faces as well
 };
 
-/// Fills `layer.coverage`, `.facets` and the tiles' lists, row by row from the strip's first, with
+/// Fills `layer.coverage`, `.visuals` and the tiles' lists, row by row from the strip's first, with
 /// the triangles that may be seen in the strip. Their values do not depend on the strip.
 void place_triangles(const PreparedScene& scene, const Lens& lens, const Strip& strip,
                      const Selection& selection, Layer& layer);

@@ -13,11 +13,6 @@ constexpr int kCell_px = 4;  // of the smallest cells
 constexpr int kCoarser = 4;  // from one level of cells to the next
 constexpr int kManyCells = 4;
 
-FixedRect common_part(const FixedRect& a, const FixedRect& b) {
-  return {std::max(a.x_low, b.x_low), std::max(a.y_low, b.y_low), std::min(a.x_high, b.x_high),
-          std::min(a.y_high, b.y_high)};
-}
-
 std::int32_t fixed_sample(double px) {
   if (!(std::abs(px) <= kFarthest_px)) {
     throw Error(ErrorCode::kUsage,
@@ -56,7 +51,6 @@ void Lens::fill_samples() {
   all_ = FixedRect::none();
   const uav::PixelRays rays(camera_);
   for (int row = 0; row < camera_.height_px; ++row) {
-    FixedRect& bounds = rows_.emplace_back(FixedRect::none());
     for (int column = 0; column < camera_.width_px; ++column) {
       if (column % kStride == 0) blocks_.push_back(FixedRect::none());
       const std::size_t i =
@@ -64,13 +58,12 @@ void Lens::fill_samples() {
       if (const auto p = rays.at({static_cast<double>(column), static_cast<double>(row)})) {
         x_[i] = fixed_sample(camera_.cx_px + camera_.fx_px * p->x);
         y_[i] = fixed_sample(camera_.cy_px + camera_.fy_px * p->y);
-        bounds.include({x_[i], y_[i], x_[i], y_[i]});
+        all_.include({x_[i], y_[i], x_[i], y_[i]});
       } else {
         ++blind_pixels_;
       }
       blocks_.back().include({x_[i], y_[i], x_[i], y_[i]});
     }
-    all_.include(bounds);
   }
 }
 
@@ -115,10 +108,17 @@ Lens::Cells Lens::empty_cells(int size) const {
   return {size, columns, std::vector<PixelRect>(place_of(0, rows, columns), PixelRect::none())};
 }
 
-FixedRect Lens::samples_of_rows(int first, int last) const {
-  if (is_grid()) return {0, first * kSubpixels, all_.x_high, last * kSubpixels};
+FixedRect Lens::samples_of(const PixelRect& pixels) const {
+  if (is_grid()) {
+    return {pixels.x_low * kSubpixels, pixels.y_low * kSubpixels, pixels.x_high * kSubpixels,
+            pixels.y_high * kSubpixels};
+  }
   FixedRect bounds = FixedRect::none();
-  for (int row = first; row <= last; ++row) bounds.include(rows_[static_cast<std::size_t>(row)]);
+  for (int row = pixels.y_low; row <= pixels.y_high; ++row) {
+    for (int block = pixels.x_low / kStride; block <= pixels.x_high / kStride; ++block) {
+      bounds.include(samples_of_block(block, row));
+    }
+  }
   return bounds;
 }
 

@@ -34,6 +34,11 @@ struct Rect {
     return {kHigh, kHigh, kLow, kLow};
   }
 };
+template <class T>
+Rect<T> common_part(const Rect<T>& a, const Rect<T>& b) {
+  return {std::max(a.x_low, b.x_low), std::max(a.y_low, b.y_low), std::min(a.x_high, b.x_high),
+          std::min(a.y_high, b.y_high)};
+}
 using PixelRect = Rect<int>;
 using FixedRect = Rect<std::int32_t>;  ///< in kSubpixels
 
@@ -61,8 +66,8 @@ class Lens {
     return blocks_[static_cast<std::size_t>(row) * (stride_ / kStride) +
                    static_cast<std::size_t>(block)];
   }
-  /// The bounds of the samples of some rows.
-  FixedRect samples_of_rows(int first, int last) const;
+  /// The bounds of the samples of some pixels; of all of their blocks, if there is no grid.
+  FixedRect samples_of(const PixelRect& pixels) const;
   /// The part of `rect` within the bounds of all samples; `rect` itself if there is none.
   FixedRect seen_part(const FixedRect& rect) const;
   /// The pixels whose samples may lie within `rect`: no other's does.
@@ -90,7 +95,6 @@ class Lens {
   std::vector<std::int32_t> x_;
   std::vector<std::int32_t> y_;
   std::vector<FixedRect> blocks_;  // of kStride pixels; kBlind counts
-  std::vector<FixedRect> rows_;
   FixedRect all_{};
   std::size_t blind_pixels_ = 0;
   std::array<Cells, 5> cells_;  ///< from fine to coarse

@@ -125,7 +125,7 @@ HWY_INLINE V spot_share(const LightRow& light, const Ray& ray) {
 }
 
 // Blinn's highlight: the cosine between the normal and the half of light and view, to a power.
-HWY_INLINE V highlight(const Surface& s, V exponent, const Ray& ray) {
+HWY_INLINE V highlight(const Surface& s, float exponent, const Ray& ray) {
   const V over_length = Div(set(1.0F), ray.length);
   const V view = Div(set(-1.0F), hn::Sqrt(dot(s.x, s.y, s.z, s.x, s.y, s.z)));
   const V hx = Add(Mul(ray.x, over_length), Mul(s.x, view));
@@ -133,17 +133,7 @@ HWY_INLINE V highlight(const Surface& s, V exponent, const Ray& ray) {
   const V hz = Add(Mul(ray.z, over_length), Mul(s.z, view));
   const V length2 = hn::Max(dot(hx, hy, hz, hx, hy, hz), set(1e-20F));
   const V cosine = Div(dot(s.normal, hx, hy, hz), hn::Sqrt(length2));
-  V result = set(0.0F);
-  M rest = hn::Ge(exponent, set(0.0F));
-  alignas(64) std::array<float, kMaxLanes> exponents;
-  hn::Store(exponent, D(), exponents.data());
-  while (!hn::AllFalse(D(), rest)) {
-    const float e = exponents[static_cast<std::size_t>(hn::FindFirstTrue(D(), rest))];
-    const M same = hn::Eq(exponent, set(e));
-    result = hn::IfThenElse(same, power_of_cosine(cosine, e), result);
-    rest = hn::AndNot(same, rest);
-  }
-  return result;
+  return power_of_cosine(cosine, exponent);
 }
 
 // How much of a light reaches some surfaces: spots and shadows.
@@ -160,8 +150,8 @@ HWY_INLINE V share_of(const Shading& shading, const LightRow& light, const Surfa
 }
 
 // The colours of surfaces under all lights, before their textures, at most 1. Light of one colour
-// is added up before it is coloured. `material` has the specular colour and the exponent of
-// surfaces that shine; if there is none, all lights are points without shadows.
+// is added up before it is coloured. Without a material, nothing shines, and all lights are points
+// without shadows.
 template <class Material>
 HWY_INLINE Colour light_up(const Shading& shading, const Layer& layer, const Surface& s,
                            const Material& material) {
@@ -177,9 +167,9 @@ HWY_INLINE Colour light_up(const Shading& shading, const Layer& layer, const Sur
       // A side that is turned away needs no shadows.
       if (!hn::AllTrue(D(), hn::Eq(toward, zero))) {
         const V share = share_of(shading, light, s, ray);
-        if (light.has_specular && material.is_shiny) {
+        if (light.has_specular && material.is_shiny != 0) {
           const V shine =
-              Mul(Div(Mul(share, ray.length), ray.cost), highlight(s, material.exponent(), ray));
+              Mul(Div(Mul(share, ray.length), ray.cost), highlight(s, material.shininess, ray));
           specular = Add(specular, hn::IfThenElseZero(hn::Gt(toward, zero), shine));
         }
         toward = Mul(toward, share);
@@ -190,8 +180,8 @@ HWY_INLINE Colour light_up(const Shading& shading, const Layer& layer, const Sur
     add_to(sum, scaled(colour(light.diffuse), s.diffuse), diffuse);
     diffuse = zero;
     if constexpr (!kIsPlain) {
-      if (material.is_shiny) {
-        add_to(sum, scaled(colour(light.specular), material.specular()), specular);
+      if (material.is_shiny != 0) {
+        add_to(sum, scaled(colour(light.specular), colour(material.specular)), specular);
       }
       specular = zero;
     }

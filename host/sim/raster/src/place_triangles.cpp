@@ -1,8 +1,10 @@
 #include "clip.h"
+#include "facet.h"
 #include "layer.h"
 #include "transform.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace tether::raster {
@@ -11,7 +13,7 @@ namespace {
 using uav::Pose;
 using uav::Vec3;
 
-// The field of view of a strip's pixels, as slopes at z = 1.
+// The field of view of some pixels, as slopes at z = 1.
 class Frustum {
  public:
   Frustum(const FixedRect& seen, const Projection& p)
@@ -45,24 +47,9 @@ class Frustum {
   std::array<Side, 4> sides_;
 };
 
-// A plane over the picture, of a function that is linear in the ray (X, Y, 1).
-std::array<float, 3> over_picture(const Vec3& linear, const Projection& p, double x_ref,
-                                  double y_ref) {
-  const double value =
-      linear.x * ((x_ref - p.cx) / p.fx) + linear.y * ((y_ref - p.cy) / p.fy) + linear.z;
-  return {static_cast<float>(value), static_cast<float>(linear.x / p.fx),
-          static_cast<float>(linear.y / p.fy)};
-}
-
-// Whether no result computed with the plane becomes infinite.
-bool is_usable(const std::array<float, 3>& plane) {
-  constexpr float kSteepest = 1e15F;
-  return std::abs(plane[0]) < kSteepest && std::abs(plane[1]) < kSteepest &&
-         std::abs(plane[2]) < kSteepest;
-}
-
-Transformation make_transformation(const Pose& X_CV, const Projection& p) {
+Transformation make_transformation(const Pose& X_CV, const Projection& p, const FixedRect& seen) {
   Transformation t{};
+  t.seen = seen;
   const std::array<Vec3, 3> columns{rotate(X_CV.q, {1.0, 0.0, 0.0}),
                                     rotate(X_CV.q, {0.0, 1.0, 0.0}),
                                     rotate(X_CV.q, {0.0, 0.0, 1.0})};
@@ -79,11 +66,6 @@ Transformation make_transformation(const Pose& X_CV, const Projection& p) {
   t.cy = static_cast<float>(p.cy * kSubpixels);
   t.near_m = static_cast<float>(p.near_m);
   return t;
-}
-
-std::array<float, 3> rotated(const std::array<float, 9>& r, const std::array<float, 3>& v) {
-  return {r[0] * v[0] + r[1] * v[1] + r[2] * v[2], r[3] * v[0] + r[4] * v[1] + r[5] * v[2],
-          r[6] * v[0] + r[7] * v[1] + r[8] * v[2]};
 }
 
 std::int64_t doubled_area(const FixedPoint& a, const FixedPoint& b, const FixedPoint& c) {
@@ -128,24 +110,24 @@ class Placer {
         strip_(strip),
         selection_(selection),
         layer_(layer),
-        frustum_(lens.samples_of_rows(strip.first_row, strip.first_row + strip.rows - 1),
-                 layer.projection),
+        pixels_(common_part(selection.pixels, {0, strip.first_row, lens.camera().width_px - 1,
+                                               strip.first_row + strip.rows - 1})),
+        seen_(lens.seen_part(lens.samples_of(pixels_))),
+        frustum_(seen_, layer.projection),
         across_(tiles_across(lens)) {}
 
   void place_all() {
     const int tile_rows = (strip_.rows + kTile_px - 1) / kTile_px;
     layer_.coverage.clear();
-    layer_.facets.clear();
+    layer_.visuals.clear();
     for (auto* lists : {&layer_.opaque, &layer_.transparent}) {
       lists->resize(place_of(0, tile_rows));
       for (auto& list : *lists) list.clear();
     }
-    if (lens_.samples_of_rows(strip_.first_row, strip_.first_row + strip_.rows - 1).is_empty()) {
-      return;
-    }
     for (const PreparedInstance& instance : scene_.instances) {
       if (is_selected(instance)) place(instance);
     }
+    layer_.clear_facets();
   }
 
  private:
@@ -164,8 +146,9 @@ class Placer {
     const Pose X_CV = layer_.X_CW * X_WV;
     if (mesh.clusters == 0 || !may_see(X_CV, mesh.bounds)) return;
     instance_ = &instance;
-    looks_ = scene_.looks.data() + mesh.first_look;
-    transformation_ = make_transformation(X_CV, layer_.projection);
+    transformation_ = make_transformation(X_CV, layer_.projection, seen_);
+    layer_.visuals.push_back(
+        {transformation_.rotation, mesh.first_look, instance.material, instance.entity});
     const std::uint32_t first_triangle = scene_.clusters[mesh.first_cluster].first_triangle;
     for (std::uint32_t i = 0; i < mesh.clusters; ++i) {
       const Cluster& cluster = scene_.clusters[mesh.first_cluster + i];
@@ -179,8 +162,10 @@ class Placer {
   }
 
   void place(const Cluster& cluster, std::uint32_t first_primitive) {
-    place_vertices(scene_, cluster, transformation_, placed_);
-    for (std::uint32_t i = 0; i < cluster.triangles; ++i) {
+    const bool both_sides = selection_.both_sides || instance_->transparent;
+    std::uint64_t seen = place_vertices(scene_, cluster, transformation_, both_sides, placed_);
+    for (; seen != 0; seen &= seen - 1) {
+      const auto i = static_cast<std::uint32_t>(std::countr_zero(seen));
       corners_ = {i, cluster.stride + i, 2 * cluster.stride + i};
       triangle_ = cluster.first_triangle + i;
       primitive_ = first_primitive + i;
@@ -197,18 +182,16 @@ class Placer {
   }
 
   void place_triangle() {
-    const auto& outside = placed_.outside;
-    const std::int32_t a = outside[corners_[0]];
-    const std::int32_t b = outside[corners_[1]];
-    const std::int32_t c = outside[corners_[2]];
-    if ((a & b & c) != 0) return;
-    if ((a | b | c) == 0) {
+    const auto is_usable = [&](std::size_t corner) {
+      return (placed_.outside[corners_[corner]] & kUnusable) == 0;
+    };
+    if (is_usable(0) && is_usable(1) && is_usable(2)) {
       cover(point(0), point(1), point(2));
       return;
     }
     Polygon polygon;
     for (std::size_t i = 0; i < 3; ++i) {
-      polygon.add({position(i), point(i), outside[corners_[i]] == 0});
+      polygon.add({position(i), point(i), is_usable(i)});
     }
     clip(polygon, layer_.projection);
     for (std::size_t i = 2; i < polygon.size; ++i) {
@@ -224,9 +207,7 @@ class Placer {
     if (area == 0 || (area > 0 && !both_sides)) return;
     const FixedRect bounds{std::min({p.x, q.x, r.x}), std::min({p.y, q.y, r.y}),
                            std::max({p.x, q.x, r.x}), std::max({p.y, q.y, r.y})};
-    PixelRect pixels = lens_.pixels_of(bounds);
-    pixels.y_low = std::max(pixels.y_low, strip_.first_row);
-    pixels.y_high = std::min(pixels.y_high, strip_.first_row + strip_.rows - 1);
+    const PixelRect pixels = common_part(lens_.pixels_of(bounds), pixels_);
     if (pixels.is_empty()) return;
     Coverage coverage{};
     coverage.pixels = pixels;
@@ -236,8 +217,15 @@ class Placer {
     set_edge(coverage, 1, second, third);
     set_edge(coverage, 2, third, p);
     if (lens_.is_grid() && is_between_pixels(coverage)) return;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::size_t at = corners_[i];
+      coverage.corners[i] = {placed_.x[at], placed_.y[at], placed_.z[at]};
+    }
+    coverage.primitive = primitive_;
+    coverage.visual = static_cast<std::uint32_t>(layer_.visuals.size() - 1);
+    coverage.triangle = triangle_;
+    coverage.depth = depth_of(coverage.corners, layer_.projection, lens_.seen_part(bounds));
     layer_.coverage.push_back(coverage);
-    add_facet(lens_.seen_part(bounds));
     add_to_tiles(pixels);
   }
 
@@ -257,81 +245,6 @@ class Placer {
     }
   }
 
-  // The planes are most exact near the middle of the triangle's visible part.
-  void add_facet(const FixedRect& seen) {
-    Facet& facet = layer_.facets.emplace_back();
-    const std::int32_t x = (seen.x_low + seen.x_high) / 2;
-    const std::int32_t y = (seen.y_low + seen.y_high) / 2;
-    const double x_ref = static_cast<double>(x) / kSubpixels;
-    const double y_ref = static_cast<double>(y) / kSubpixels;
-    facet.x_ref = static_cast<float>(x_ref);
-    facet.y_ref = static_cast<float>(y_ref);
-    set_planes(facet, x_ref, y_ref);
-    set_look(facet);
-    facet.material = instance_->material;
-    facet.primitive = primitive_;
-    facet.entity = instance_->entity;
-  }
-
-  // With the corners as columns of M, M⁻¹·(X, Y, 1) are the corners' weights over z.
-  void set_planes(Facet& facet, double x_ref, double y_ref) {
-    const Vec3 a = position(0);
-    const Vec3 b = position(1);
-    const Vec3 c = position(2);
-    const Vec3 normal = cross(b - a, c - a);
-    const double determinant = dot(a, normal);
-    const double scale = 1.0 / determinant;
-    const Projection& p = layer_.projection;
-    const double low = 1.0 / std::max({a.z, b.z, c.z});
-    const double high = 1.0 / std::max(p.near_m, std::min({a.z, b.z, c.z}));
-    facet.inverse_depth_low = static_cast<float>(low);
-    facet.inverse_depth_high = static_cast<float>(high);
-    facet.inverse_depth = over_picture(scale * normal, p, x_ref, y_ref);
-    facet.second = over_picture(scale * cross(c, a), p, x_ref, y_ref);
-    facet.third = over_picture(scale * cross(a, b), p, x_ref, y_ref);
-    if (is_usable(facet.inverse_depth) && is_usable(facet.second) && is_usable(facet.third)) {
-      return;
-    }
-    // The triangle is seen edge-on: constant values.
-    facet.inverse_depth = {facet.inverse_depth_high, 0.0F, 0.0F};
-    facet.second = facet.third = {facet.inverse_depth_high / 3.0F, 0.0F, 0.0F};
-  }
-
-  void set_look(Facet& facet) {
-    const auto& looks = scene_.triangles[triangle_];
-    const VertexLook& a = looks_[looks[0]];
-    const VertexLook& b = looks_[looks[1]];
-    const VertexLook& c = looks_[looks[2]];
-    const MaterialRow& material = scene_.materials[instance_->material];
-    set_coordinate(facet, {a.uv[0], b.uv[0], c.uv[0]}, material.texture_width, facet.u);
-    set_coordinate(facet, {a.uv[1], b.uv[1], c.uv[1]}, material.texture_height, facet.v);
-    const auto na = rotated(transformation_.rotation, a.normal);
-    facet.is_flat = a.normal == b.normal && a.normal == c.normal ? -1 : 0;
-    if (facet.is_flat != 0) {
-      for (std::size_t i = 0; i < 3; ++i) facet.normal[i] = {na[i], 0.0F, 0.0F};
-      return;
-    }
-    const auto nb = rotated(transformation_.rotation, b.normal);
-    const auto nc = rotated(transformation_.rotation, c.normal);
-    for (std::size_t i = 0; i < 3; ++i) facet.normal[i] = {na[i], nb[i] - na[i], nc[i] - na[i]};
-  }
-
-  static void set_coordinate(const Facet& facet, const std::array<float, 3>& corners, float texels,
-                             Facet::Coordinate& out) {
-    const float second = corners[1] - corners[0];
-    const float third = corners[2] - corners[0];
-    out.first = corners[0];
-    out.low = std::min({0.0F, second, third});
-    out.high = std::max({0.0F, second, third});
-    for (std::size_t i = 0; i < 3; ++i) {
-      out.added[i] = second * facet.second[i] + third * facet.third[i];
-    }
-    for (std::size_t i = 0; i < 2; ++i) {
-      out.change[i] = texels * out.added[i + 1];
-      out.shrinkage[i] = texels * facet.inverse_depth[i + 1];
-    }
-  }
-
   static constexpr double kSlack = 1.0 + 1e-5;  // of transformations in single precision
 
   const PreparedScene& scene_;
@@ -339,14 +252,15 @@ class Placer {
   const Strip& strip_;
   const Selection& selection_;
   Layer& layer_;
+  PixelRect pixels_;
+  FixedRect seen_;
   Frustum frustum_;
   int across_;
   PlacedVertices placed_;
   Transformation transformation_{};
   const PreparedInstance* instance_ = nullptr;
-  const VertexLook* looks_ = nullptr;
   std::array<std::uint32_t, 3> corners_{};  // of `placed_`
-  std::size_t triangle_ = 0;
+  std::uint32_t triangle_ = 0;
   std::uint32_t primitive_ = 0;
 };
 

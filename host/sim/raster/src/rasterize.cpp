@@ -79,39 +79,20 @@ std::size_t place_of(int column, int row) {
 // triangle that is seen nearly edge-on, the plane overshoots between pixels.
 class Depth {
  public:
-  explicit Depth(const Facet& f)
-      : facet_(f),
+  explicit Depth(const DepthPlane& f)
+      : plane_(f),
         x_ref_(hn::Set(D(), f.x_ref)),
-        slope_(hn::Set(D(), f.inverse_depth[1])),
-        low_(hn::Set(D(), f.inverse_depth_low)),
-        high_(hn::Set(D(), f.inverse_depth_high)) {}
+        slope_(hn::Set(D(), f.plane[1])),
+        low_(hn::Set(D(), f.low)),
+        high_(hn::Set(D(), f.high)) {}
 
   V row(float y) const {
-    return hn::Set(D(), facet_.inverse_depth[0] + facet_.inverse_depth[2] * (y - facet_.y_ref));
+    return hn::Set(D(), plane_.plane[0] + plane_.plane[2] * (y - plane_.y_ref));
   }
   V row(V y) const {
     const D d;
-    return hn::Add(
-        hn::Set(d, facet_.inverse_depth[0]),
-        hn::Mul(hn::Set(d, facet_.inverse_depth[2]), hn::Sub(y, hn::Set(d, facet_.y_ref))));
-  }
-  // The least and the most over a rectangle: each operation is monotonic, so that
-  // they are at its corners.
-  struct Range {
-    float low, high;
-  };
-  Range range(const FixedRect& r) const {
-    const auto corner = [&](std::int32_t x, std::int32_t y) {
-      const Facet& f = facet_;
-      const float dx = static_cast<float>(x) / kSubpixels - f.x_ref;
-      const float dy = static_cast<float>(y) / kSubpixels - f.y_ref;
-      const float plane = (f.inverse_depth[0] + f.inverse_depth[2] * dy) + f.inverse_depth[1] * dx;
-      return std::min(std::max(plane, f.inverse_depth_low), f.inverse_depth_high);
-    };
-    const std::array corners{corner(r.x_low, r.y_low), corner(r.x_high, r.y_low),
-                             corner(r.x_low, r.y_high), corner(r.x_high, r.y_high)};
-    return {*std::min_element(corners.begin(), corners.end()),
-            *std::max_element(corners.begin(), corners.end())};
+    return hn::Add(hn::Set(d, plane_.plane[0]),
+                   hn::Mul(hn::Set(d, plane_.plane[2]), hn::Sub(y, hn::Set(d, plane_.y_ref))));
   }
 
   V at(V row, V x) const {
@@ -120,7 +101,7 @@ class Depth {
   }
 
  private:
-  const Facet& facet_;
+  const DepthPlane& plane_;
   V x_ref_, slope_, low_, high_;
 };
 
@@ -219,18 +200,18 @@ HWY_INLINE void take_part(const GridEdges& edges, const Depth& depth, VU ids, co
 
 // `hidden` is the 1/depth at which all of the tile is taken already.
 template <class Target>
-void rasterize_on_grid(const Coverage& t, const Facet& facet, std::uint32_t id, const Tile& tile,
-                       const Target& target, float& hidden) {
+void rasterize_on_grid(const Coverage& t, std::uint32_t id, const Tile& tile, const Target& target,
+                       float& hidden) {
   const Part part(tile, t.pixels);
   const int x = tile.x + part.first_column;
   const int y = tile.y + part.first_row;
   const GridEdges edges(t, x, y);
   if (edges.misses(part.columns, part.rows)) return;
-  const Depth depth(facet);
-  const Depth::Range range =
-      depth.range({x * kSubpixels, y * kSubpixels, (x + part.columns - 1) * kSubpixels,
-                   (y + part.rows - 1) * kSubpixels});
+  const DepthRange range =
+      depth_range(t.depth, {x * kSubpixels, y * kSubpixels, (x + part.columns - 1) * kSubpixels,
+                            (y + part.rows - 1) * kSubpixels});
   if (Target::kKeepsNearest && range.high <= hidden) return;
+  const Depth depth(t.depth);
   const VU ids = hn::Set(DU(), id);
   // The last vector's pixels beyond the part as well.
   const int lanes = static_cast<int>(hn::Lanes(D()));
@@ -271,44 +252,16 @@ V in_pixels(const std::int32_t* samples) {
   return hn::Mul(hn::ConvertTo(d, hn::LoadU(DI(), samples)), hn::Set(d, 1.0F / kSubpixels));
 }
 
-// The edges of a triangle that part a rectangle's samples, as bits.
-struct Reach {
-  bool is_none;  ///< one edge is beyond them all
-  unsigned edges;
-};
-
-// Of those in `edges` only: all samples are inside of the others.
-Reach reach(const Coverage& t, const FixedRect& r, unsigned edges) {
-  Reach result{false, 0};
-  for (std::size_t i = 0; i < 3; ++i) {
-    if ((edges >> i & 1U) == 0) continue;
-    const auto x = std::minmax({std::int64_t{t.a[i]} * r.x_low, std::int64_t{t.a[i]} * r.x_high});
-    const auto y = std::minmax({std::int64_t{t.b[i]} * r.y_low, std::int64_t{t.b[i]} * r.y_high});
-    if (x.second + y.second + t.c[i] < 0) return {true, 0};
-    if (x.first + y.first + t.c[i] < 0) result.edges |= 1U << i;
-  }
-  return result;
-}
-
-FixedRect samples_of(const Tile& tile, const Lens& lens) {
-  FixedRect bounds = FixedRect::none();
-  for (int row = 0; row < tile.height; ++row) {
-    bounds.include(lens.samples_of_block(tile.x / kTile_px, tile.y + row));
-  }
-  return bounds;
-}
-
 // `bounds` are those of all of the tile's samples.
 template <class Target>
-void rasterize_samples(const Coverage& t, const Facet& facet, std::uint32_t id, const Tile& tile,
-                       const Lens& lens, const FixedRect& bounds, const Target& target,
-                       float& hidden) {
+void rasterize_samples(const Coverage& t, std::uint32_t id, const Tile& tile, const Lens& lens,
+                       const FixedRect& bounds, const Target& target, float& hidden) {
   const D d;
   const int lanes = static_cast<int>(hn::Lanes(d));
   const Reach of_tile = reach(t, bounds, 7U);
   if (of_tile.is_none) return;
-  const Depth depth(facet);
-  const Depth::Range range = depth.range(bounds);
+  const Depth depth(t.depth);
+  const DepthRange range = depth_range(t.depth, bounds);
   if (Target::kKeepsNearest && range.high <= hidden) return;
   const Part part(tile, t.pixels);
   const VU ids = hn::Set(DU(), id);
@@ -344,15 +297,16 @@ void rasterize_samples(const Coverage& t, const Facet& facet, std::uint32_t id, 
 
 template <class Target>
 void rasterize_all(const Layer& layer, const Lens& lens, const Tile& tile,
-                   std::span<const std::uint32_t> triangles, const Target& target) {
-  const FixedRect bounds = lens.is_grid() ? FixedRect{} : samples_of(tile, lens);
+                   std::span<const std::uint32_t> triangles, Names names, const Target& target) {
+  const FixedRect bounds =
+      lens.samples_of({tile.x, tile.y, tile.x + tile.width - 1, tile.y + tile.height - 1});
   float hidden = 0.0F;
   for (const std::uint32_t i : triangles) {
+    const std::uint32_t id = names == Names::kKeys ? layer.keys[i] : i + 1;
     if (lens.is_grid()) {
-      rasterize_on_grid(layer.coverage[i], layer.facets[i], i + 1, tile, target, hidden);
+      rasterize_on_grid(layer.coverage[i], id, tile, target, hidden);
     } else {
-      rasterize_samples(layer.coverage[i], layer.facets[i], i + 1, tile, lens, bounds, target,
-                        hidden);
+      rasterize_samples(layer.coverage[i], id, tile, lens, bounds, target, hidden);
     }
   }
 }
@@ -368,14 +322,14 @@ void clear_on(float farthest, TileIds& ids) {
 }
 
 void rasterize_nearest_on(const Layer& layer, const Lens& lens, const Tile& tile,
-                          std::span<const std::uint32_t> triangles, TileIds& ids) {
-  rasterize_all(layer, lens, tile, triangles, Nearest{ids});
+                          std::span<const std::uint32_t> triangles, Names names, TileIds& ids) {
+  rasterize_all(layer, lens, tile, triangles, names, Nearest{ids});
 }
 
 void rasterize_next_on(const Layer& layer, const Lens& lens, const Tile& tile,
                        std::span<const std::uint32_t> triangles, const TileIds& last,
                        TileIds& next) {
-  rasterize_all(layer, lens, tile, triangles, Next{last, next});
+  rasterize_all(layer, lens, tile, triangles, Names::kPlaces, Next{last, next});
 }
 
 }  // namespace tether::raster::HWY_NAMESPACE
@@ -393,8 +347,8 @@ void clear(double farthest_m, TileIds& ids) {
 }
 
 void rasterize_nearest(const Layer& layer, const Lens& lens, const Tile& tile,
-                       std::span<const std::uint32_t> triangles, TileIds& ids) {
-  HWY_DYNAMIC_DISPATCH(rasterize_nearest_on)(layer, lens, tile, triangles, ids);
+                       std::span<const std::uint32_t> triangles, Names names, TileIds& ids) {
+  HWY_DYNAMIC_DISPATCH(rasterize_nearest_on)(layer, lens, tile, triangles, names, ids);
 }
 
 bool rasterize_next(const Layer& layer, const Lens& lens, const Tile& tile,

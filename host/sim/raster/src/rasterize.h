@@ -15,23 +15,30 @@ struct Tile {
   int width = 0, height = 0;
 };
 
-/// For each pixel of a tile, the triangle that is seen there (1 + its place in the layer; 0: none)
-/// and the reciprocal of its depth.
+/// For each pixel of a tile, the triangle that is seen there (0: none) and the reciprocal of its
+/// depth.
 struct TileIds {
-  alignas(64) std::array<std::uint32_t, kTilePixels> id;
+  alignas(64) std::array<std::uint32_t, kTilePixels + kMaxLanes> id;  ///< some more, to be read
   alignas(64) std::array<float, kTilePixels> inverse_depth;
 };
 
 /// No triangle anywhere, as if at this depth.
 void clear(double farthest_m, TileIds& ids);
 
+/// What triangles are called in TileIds.
+enum class Names {
+  kPlaces,  ///< 1 + the place in the layer
+  kKeys     ///< Layer::keys
+};
+
 /// Keeps, for each pixel, the nearest of `triangles` and of the present one; of equally near ones,
 /// the first.
 void rasterize_nearest(const Layer& layer, const Lens& lens, const Tile& tile,
-                       std::span<const std::uint32_t> triangles, TileIds& ids);
+                       std::span<const std::uint32_t> triangles, Names names, TileIds& ids);
 
 /// Finds, for each pixel, the farthest of `triangles` that is nearer than `last`; of equally far
-/// ones, the first after `last`. `next` is set anew. @returns whether there is any.
+/// ones, the first after `last`. Names are places. `next` is set anew. @returns whether there is
+/// any.
 bool rasterize_next(const Layer& layer, const Lens& lens, const Tile& tile,
                     std::span<const std::uint32_t> triangles, const TileIds& last, TileIds& next);
 

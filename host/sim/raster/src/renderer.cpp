@@ -19,7 +19,6 @@ namespace tether::raster {
 namespace {
 
 constexpr std::size_t kLensesKept = 16;
-constexpr int kScoutScale = 8;
 constexpr int kStripsPerThread = 4;
 
 void require(bool condition, const char* what) {
@@ -78,25 +77,6 @@ void check(const Picture& picture, const uav::CameraModel& c) {
           "the picture's arrays are not of the image's size");
 }
 
-// The same field of view in fewer pixels.
-uav::CameraModel smaller(uav::CameraModel c, int scale) {
-  c.width_px = (c.width_px + scale - 1) / scale;
-  c.height_px = (c.height_px + scale - 1) / scale;
-  c.fx_px /= scale;
-  c.fy_px /= scale;
-  c.cx_px = (c.cx_px + 0.5) / scale - 0.5;
-  c.cy_px = (c.cy_px + 0.5) / scale - 0.5;
-  return c;
-}
-
-// Equal parts of the rows, each from where the last one ends.
-Strip strip_of(int rows, int part, int parts, int multiple) {
-  const int units = (rows + multiple - 1) / multiple;
-  const int first = units * part / parts * multiple;
-  const int end = std::min(rows, units * (part + 1) / parts * multiple);
-  return {first, end - first};
-}
-
 }  // namespace
 
 class Renderer::Work {
@@ -119,19 +99,28 @@ class Renderer::Work {
     check(view, scene_);
     check(picture, view.camera);
     update_shadows(view);
-    Sampling sampling = sampling_of(view);
-    if (view.antialias) sampling.layers = std::max(sampling.layers, 4);
-    const StripRenderer::Job job{scene_.prepared(), lens_of(view.camera), shadows_, view, picture,
-                                 sampling};
+    const Lens& lens = lens_of(view.camera);
     const int rows = view.camera.height_px;
-    const bool is_rolling = sampling.bands > 1;
-    const int tile_rows = (rows + kTile_px - 1) / kTile_px;
+    const bool is_exposed = view.instants.size() > 1 && view.exposure_s + view.readout_s > 0.0;
+    Sampling sampling;
+    if (is_exposed) {
+      place_layer(scene_.prepared(), lens, shadows_, view, {0, rows},
+                  {0, 0, view.camera.width_px - 1, rows - 1},
+                  0.5 * (view.exposure_s + view.readout_s), moment_, middle_);
+      sampling = {view, lens, scene_.body_radii_m(), middle_};
+    }
     const int threads = helpers_ == nullptr ? 1 : helpers_->threads() + 1;
-    const int strips = is_rolling     ? sampling.bands
-                       : threads == 1 ? 1
-                                      : std::min(tile_rows, threads * kStripsPerThread);
+    const int tile_rows = (rows + kTile_px - 1) / kTile_px;
+    const int wanted = threads == 1 ? 1 : std::min(tile_rows, threads * kStripsPerThread);
+    const int strip_rows = sampling.band_rows() > 0 ? sampling.band_rows()
+                                                    : (tile_rows + wanted - 1) / wanted * kTile_px;
+    const int strips = (rows + strip_rows - 1) / strip_rows;
+    const bool is_whole = strips == 1 && is_exposed && !view.antialias;
+    const StripRenderer::Job job{
+        scene_.prepared(), lens, shadows_, view, picture, sampling, is_whole ? &middle_ : nullptr};
     const auto draw_strip = [&](int i) {
-      scratch().draw(job, strip_of(rows, i, strips, is_rolling ? 1 : kTile_px));
+      const int first = i * strip_rows;
+      scratch().draw(job, {first, std::min(strip_rows, rows - first)});
     };
     if (threads == 1 || strips == 1) {
       for (int i = 0; i < strips; ++i) draw_strip(i);
@@ -161,24 +150,11 @@ class Renderer::Work {
     for (ShadowMap& map : shadows_) map.update(moment_.X_WB, view.hidden);
   }
 
-  // The depth of the nearest surface comes from a small picture of the last instant.
-  Sampling sampling_of(const View& view) {
-    if (view.instants.size() == 1 || view.exposure_s + view.readout_s <= 0.0) return {};
-    View scout = view;
-    scout.camera = smaller(view.camera, kScoutScale);
-    scout.instants = view.instants.last(1);
-    scout.antialias = false;
-    const Picture nothing;
-    const StripRenderer::Job job{
-        scene_.prepared(), lens_of(scout.camera), shadows_, scout, nothing, {}};
-    const double nearest_m = scratch().nearest_m(job, {0, scout.camera.height_px});
-    return choose_sampling(view, motion_px(view, scene_.body_radii_m(), nearest_m));
-  }
-
   const Scene& scene_;
   Helpers* helpers_;
   std::list<Lens> lenses_;  ///< the last used one first
   std::vector<ShadowMap> shadows_;
+  Layer middle_;  ///< of the present picture
   Moment moment_;
 };
 

@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <optional>
+#include <utility>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "shade.cpp"
 #include <hwy/foreach_target.h>
 //
-#include "block-inl.h"
+#include "batch-inl.h"
 #include "vector-inl.h"
 
 #include <hwy/highway.h>
@@ -37,16 +39,13 @@ HWY_INLINE VU packed(const LightTable& table, const Colour& light) {
                 byte_of_light(table, light.b));
 }
 
-HWY_INLINE Colour load(const TileLight& from, std::size_t at) {
-  const D d;
-  return {hn::Load(d, from.r.data() + at), hn::Load(d, from.g.data() + at),
-          hn::Load(d, from.b.data() + at)};
+HWY_INLINE Colour load(const TileLight& from, const Place& at) {
+  return {load(from.r.data(), at), load(from.g.data(), at), load(from.b.data(), at)};
 }
-HWY_INLINE void store(const Colour& c, TileLight& to, std::size_t at) {
-  const D d;
-  hn::Store(c.r, d, to.r.data() + at);
-  hn::Store(c.g, d, to.g.data() + at);
-  hn::Store(c.b, d, to.b.data() + at);
+HWY_INLINE void store(const Colour& c, TileLight& to, const Place& at) {
+  store(c.r, to.r.data(), at);
+  store(c.g, to.g.data(), at);
+  store(c.b, to.b.data(), at);
 }
 
 // Pixels under others, by the opacity of these.
@@ -61,289 +60,314 @@ HWY_INLINE VU mixed(VU below, VU above) {
                 channel(hn::ShiftRight<16>(below), hn::ShiftRight<16>(above)));
 }
 
-// A number of the triangles that several pixels see; 0: none.
-HWY_INLINE VI of_facets(const Layer& layer, VU ids, const std::uint32_t Facet::*number) {
-  VI all = whole(0);
-  for_each_number(ids, [&](std::size_t index, hn::Mask<DI> same, auto) HWY_ATTR {
-    all = hn::IfThenElse(same, whole(static_cast<std::int32_t>(layer.facets[index].*number)), all);
-  });
-  return all;
-}
-
-// The mean light of a block over some layers. A pixel that sees a triangle in the middle layer is
-// shaded there once for all layers in which it sees that triangle.
+// The mean light of a tile over the layers of an exposure. A pixel is shaded once for all layers in
+// which it sees the same triangle: where that is in the middle layer.
 class Mean {
  public:
-  Mean(const Part& part, std::span<const Layer> layers, std::span<const TileIds> ids, Block& block,
-       TileLight& light, TilePixels& pixels)
-      : part_(part),
-        layers_(layers),
-        ids_(ids),
-        b_(block),
-        light_(light),
+  Mean(const Shading& shading, const Exposed& exposed, const Tile& tile, TilePixels& pixels)
+      : shading_(shading),
+        exposed_(exposed),
+        tile_(tile),
         pixels_(pixels),
-        middle_(layers.size() / 2),
-        share_(1.0F / static_cast<float>(layers.size())) {}
+        middle_(exposed.count / 2),
+        share_(set(1.0F / static_cast<float>(exposed.count))),
+        may_need_taps_(exposed.motion_px > kMotionOfOneTap_px) {
+    light_.r.fill(0.0F);
+    light_.g.fill(0.0F);
+    light_.b.fill(0.0F);
+    for (std::size_t k = 0; k < exposed_.count; ++k) always_ += once(k);
+    seen_.fill(always_);
+    others_.fill(0);
+  }
 
   void add_up() {
-    const VI number = whole(static_cast<std::int32_t>(middle_));
-    for_each_vector(part_, [&](std::size_t at) HWY_ATTR {
-      put(number, first_, at);
-      put(number, last_, at);
-      put(whole(1), count_, at);
-      put(of_facets(layers_[middle_], ids_in(middle_, at), &Facet::primitive), primitive_, at);
-      store({set(0.0F), set(0.0F), set(0.0F)}, light_, part_.first_pixel() + at);
-    });
-    for (std::size_t k = 0; k < layers_.size(); ++k) {
-      if (k != middle_) add_layer(k);
+    find_runs();
+    for (const std::uint32_t key : shading_.runs.ids()) {
+      collect(key);
+      if (key == 0) {
+        add_background();
+      } else {
+        add_triangle(key);
+      }
     }
-    add_middle();
+    encode_changed();
   }
 
  private:
+  // A triangle in a layer.
+  struct Seen {
+    std::size_t layer;
+    std::size_t triangle;
+  };
   // The way that the texture goes under a pixel during the exposure.
   struct Way {
     V u, v;    // its middle
     V du, dv;  // its length
     VI taps;   // how many places of it are looked at: about a texel apart
   };
-  using Whole = std::array<std::int32_t, Block::kPixels>;
+  using Whole = std::array<std::int32_t, kTilePixels>;
 
-  static void put(VI value, Whole& plane, std::size_t at) {
-    hn::Store(value, DI(), plane.data() + at);
-  }
-  static VI get(const Whole& plane, std::size_t at) { return hn::Load(DI(), plane.data() + at); }
-  void put_pixels(VU pixels, std::size_t at) {
-    hn::Store(pixels, DU(), pixels_.data() + part_.first_pixel() + at);
-  }
-  VU ids_in(std::size_t layer, std::size_t at) const {
-    return hn::Load(DU(), ids_[layer].id.data() + part_.first_pixel() + at);
-  }
-  void add(const Colour& light, V share, std::size_t at) {
-    Colour sum = load(light_, part_.first_pixel() + at);
-    add_to(sum, light, share);
-    store(sum, light_, part_.first_pixel() + at);
+  // What a pixel counts for a layer: one, and the layer's number times kNumber. kChanged is set
+  // after light was added.
+  static constexpr std::int32_t kNumber = 1 << 8;
+  static constexpr std::int32_t kChanged = 1 << 30;
+  static constexpr std::int32_t once(std::size_t k) {
+    return 1 + kNumber * static_cast<std::int32_t>(k);
   }
 
-  Colour background_light() const { return light_of(part_.shading.table, background_of(part_)); }
+  void find_runs() {
+    Runs& runs = shading_.runs;
+    const auto& middle = exposed_.ids(middle_).id;
+    runs.clear(exposed_.keys());
+    for_each_run(tile_, exposed_.ids(middle_), [&](std::size_t begin, std::size_t end) {
+      runs.add(middle[begin], begin, end, middle_);
+    });
+    for (std::size_t k = 0; k < exposed_.count; ++k) {
+      if (k == middle_) continue;
+      const auto& ids = exposed_.ids(k).id;
+      for_each_difference(tile_, exposed_.ids(k), exposed_.ids(middle_),
+                          [&](std::size_t begin, std::size_t end) {
+                            runs.add(ids[begin], begin, end, k);
+                            for (std::size_t at = begin; at < end; ++at) seen_[at] -= once(k);
+                          });
+    }
+  }
 
-  // Counts the pixels that see the same as in the middle layer, and shades the others.
-  void add_layer(std::size_t k) {
-    const Part part{part_.shading, layers_[k], part_.tile, ids_[k], part_.first_row, part_.rows};
-    const VI number = whole(static_cast<std::int32_t>(k));
-    for_each_vector(part_, [&](std::size_t at) HWY_ATTR {
-      const VU ids = ids_in(k, at);
-      const auto other = hn::Ne(of_facets(layers_[k], ids, &Facet::primitive), get(primitive_, at));
-      const VI first = get(first_, at);
-      const VI last = get(last_, at);
-      put(Add(get(count_, at), hn::IfThenZeroElse(other, whole(1))), count_, at);
-      put(hn::IfThenElse(other, first, hn::Min(first, number)), first_, at);
-      put(hn::IfThenElse(other, last, hn::Max(last, number)), last_, at);
-      put(hn::VecFromMask(DI(), other), other_, at);
-      hn::Store(hn::IfThenElseZero(hn::RebindMask(DU(), other), ids), DU(), b_.ids.data() + at);
+  // The pixels that see a triangle in the middle layer, and then those that do in others.
+  void collect(std::uint32_t key) {
+    batch_.clear();
+    shading_.runs.for_each(key, [&](std::size_t begin, std::size_t end, std::size_t k) HWY_ATTR {
+      if (k == middle_) batch_.add(begin, end);
     });
-    const Colour background = background_light();
-    const auto add_here = [&](std::size_t at, const Colour& light) HWY_ATTR {
-      const M other = float_mask(hn::Ne(get(other_, at), whole(0)));
-      if (hn::AllFalse(D(), other)) return;
-      add(light, hn::IfThenElseZero(other, set(share_)), at);
-    };
-    for_each_vector(part_, [&](std::size_t at) HWY_ATTR {
-      if (hn::AllTrue(D(), is_empty(b_, at))) add_here(at, background);
+    const std::size_t own = batch_.singles().size();
+    shading_.runs.for_each(key, [&](std::size_t begin, std::size_t end, std::size_t k) HWY_ATTR {
+      if (k == middle_) return;
+      for (std::size_t at = begin; at < end; ++at) {
+        if (others_[at] == 0) batch_.add(at);
+        others_[at] += once(k);
+      }
     });
-    shade_block(part, b_, [&](std::size_t at, VU own) HWY_ATTR {
-      add_here(at, select(is_empty(b_, at), background, light_of(part_.shading.table, own)));
+    batch_.fill_up();
+    const std::span<const std::int32_t> singles = batch_.singles();
+    for (std::size_t i = 0; i < singles.size(); ++i) {
+      const auto at = static_cast<std::size_t>(singles[i]);
+      seen_of_singles_[i] = i < own ? seen_[at] : std::exchange(others_[at], 0);
+    }
+    if (singles.empty()) return;
+    hn::StoreU(whole(seen_of_singles_[singles.size() - 1]), DI(),
+               seen_of_singles_.data() + singles.size());
+  }
+
+  // What the pixels of a vector count in all layers that see the triangle.
+  VI seen_at(const Place& at) const {
+    if (at.places == nullptr) return hn::LoadU(DI(), seen_.data() + at.first);
+    return hn::Load(DI(), seen_of_singles_.data() + (at.places - batch_.singles().data()));
+  }
+
+  void add_background() {
+    const Colour background = light_of(shading_.table, background_of(shading_.scene));
+    for (std::size_t i = 0; i < batch_.vectors(); ++i) {
+      const Place at = batch_.place(i);
+      add(background, seen_at(at), at);
+    }
+  }
+
+  void add_triangle(std::uint32_t key) {
+    const Seen seen = seen_by_key(key);
+    const MaterialRow& material = shading_.scene.materials[facet(seen).material];
+    const bool may_need_taps = may_need_taps_ && material.first_level > 0;
+    const Seen other = may_need_taps ? farthest_of(seen) : seen;
+    const LayerTile on{shading_, exposed_.layer(seen.layer), tile_};
+    shade_batch(on, facet(seen), batch_, [&](const Place& at, const Cell& c) HWY_ATTR {
+      const VI count = seen_at(at);
+      const bool is_always = hn::AllTrue(DI(), hn::Eq(count, whole(always_)));
+      Way way{load(c.u), load(c.v), set(0.0F), set(0.0F), whole(1)};
+      if (other.layer != seen.layer) {
+        const M moves = may_move(c);
+        if (!hn::AllFalse(D(), moves)) set_way(material, seen, other, count, c, at, moves, way);
+      }
+      if (is_always && hn::AllTrue(DI(), hn::Eq(way.taps, whole(1)))) {
+        store(pixels_at(shading_.scene, material, c, way.u, way.v), pixels_.data(), at);
+      } else {
+        add(along(material, way, c), count, at);
+      }
     });
   }
 
-  void add_middle() {
-    load_ids(part_, b_);
-    light_block(part_, b_);
-    const LightTable& table = part_.shading.table;
-    const Colour background = background_light();
-    const auto put_middle = [&](std::size_t at, const Colour& light) HWY_ATTR {
-      add(light, Mul(to_float(get(count_, at)), set(share_)), at);
-      put_pixels(packed(table, load(light_, part_.first_pixel() + at)), at);
-    };
-    for_each_vector(part_, [&](std::size_t at) HWY_ATTR {
-      if (hn::AllTrue(D(), is_empty(b_, at))) put_middle(at, background);
-    });
-    for (const Block::Run& run : b_.runs()) {
-      for (const std::size_t at : b_.places(run)) {
-        const Cell& c = b_.cell(at);
-        const Way way = run.is_textured ? way_at(run, c, at) : resting(c);
-        if (is_still(way, at)) {
-          put_pixels(pixels_at(run, c, way.u, way.v), at);
-        } else {
-          put_middle(at, select(is_empty(b_, at), background, along(run, way, c)));
-        }
+  // Adds light for all layers of a count.
+  void add(const Colour& light, VI count, const Place& at) {
+    Colour sum = load(light_, at);
+    add_to(sum, light, Mul(to_float(And(count, whole(kNumber - 1))), share_));
+    store(sum, light_, at);
+    store(hn::Or(load(seen_.data(), at), whole(kChanged)), seen_.data(), at);
+  }
+
+  // The pixels to which light was added.
+  void encode_changed() {
+    for (std::size_t at = 0; at < kTilePixels; at += lanes()) {
+      const hn::Mask<DI> changed = hn::Ne(hn::Load(DI(), seen_.data() + at), whole(always_));
+      if (hn::AllFalse(DI(), changed)) continue;
+      hn::BlendedStore(packed(shading_.table, load(light_, {at, nullptr})),
+                       hn::RebindMask(DU(), changed), DU(), pixels_.data() + at);
+    }
+  }
+
+  const Facet& facet(const Seen& seen) const {
+    return exposed_.layer(seen.layer).facet(shading_.scene, seen.triangle);
+  }
+  const std::vector<Coverage>& triangles(std::size_t k) const { return exposed_.layer(k).coverage; }
+
+  Seen seen_by_key(std::uint32_t key) const {
+    if (key <= triangles(middle_).size()) return {middle_, key - 1};
+    std::size_t k = 0;
+    const auto place = [&] { return std::size_t{key} - exposed_.layer(k).first_own_key; };
+    while (place() >= triangles(k).size()) ++k;
+    return {k, place()};
+  }
+
+  // A triangle in the layer that is farthest from the middle, of those in which it is placed.
+  Seen farthest_of(const Seen& seen) const {
+    for (std::size_t k = 0; k < middle_; ++k) {
+      for (const std::size_t layer : {exposed_.count - 1 - k, k}) {
+        if (const auto triangle = find(seen, layer)) return {layer, *triangle};
       }
     }
+    return seen;
+  }
+  // Triangles are in the order of primitives, and nearly in the same places in all layers.
+  std::optional<std::size_t> find(const Seen& seen, std::size_t k) const {
+    const std::vector<Coverage>& all = triangles(k);
+    const std::uint32_t wanted = triangles(seen.layer)[seen.triangle].primitive;
+    std::size_t i = std::min(seen.triangle, all.size());
+    while (i > 0 && all[i - 1].primitive >= wanted) --i;
+    while (i < all.size() && all[i].primitive < wanted) ++i;
+    if (i == all.size() || all[i].primitive != wanted) return std::nullopt;
+    return i;
   }
 
-  // Whether some pixels, all with triangles, see one place of one triangle in all layers.
-  bool is_still(const Way& way, std::size_t at) const {
-    const auto always = hn::Eq(get(count_, at), whole(static_cast<std::int32_t>(layers_.size())));
-    const auto once = hn::Eq(way.taps, whole(1));
-    return hn::AllTrue(DI(), And(always, once)) && hn::AllFalse(D(), is_empty(b_, at));
+  // Where the pixels look on the texture of a triangle in a layer, whether they see it or not.
+  struct Point {
+    V u, v;
+  };
+  Point point_in(const Seen& seen, const Place& at) const {
+    const Facet& f = facet(seen);
+    const Sight sight({shading_, exposed_.layer(seen.layer), tile_});
+    const Spot s = spot(f.depth, sight.pixels(at));
+    return {Add(set(f.u.first), added_at(f.u, s)), Add(set(f.v.first), added_at(f.v, s))};
   }
 
-  // Texture coordinates in the layers `of`, which differ from pixel to pixel. `u` and `v` have
-  // those of the middle layer.
-  void coordinates_in(VI of, M wanted, std::size_t at, V& u, V& v) const {
-    M rest = wanted;
-    for (std::size_t k = 0; !hn::AllFalse(D(), rest) && k < layers_.size(); ++k) {
-      const M here = And(rest, float_mask(hn::Eq(of, whole(static_cast<std::int32_t>(k)))));
-      if (hn::AllFalse(D(), here)) continue;
-      rest = hn::AndNot(here, rest);
-      if (k == middle_) continue;
-      const Layer& layer = layers_[k];
-      const Part part{part_.shading, layer, part_.tile, ids_[k], part_.first_row, part_.rows};
-      const Pixels p = Sight(part).pixels(at);
-      const V z =
-          Div(set(1.0F), hn::Load(D(), ids_[k].inverse_depth.data() + part_.first_pixel() + at));
-      const VU ids = hn::IfThenElseZero(hn::RebindMask(DU(), here), ids_in(k, at));
-      for_each_number(ids, [&](std::size_t index, hn::Mask<DI> pixels, auto) HWY_ATTR {
-        const M same = float_mask(pixels);
-        const Facet& facet = layer.facets[index];
-        const TexturePoint point = texture_point(facet, spot(facet, p, z));
-        u = hn::IfThenElse(same, point.u, u);
-        v = hn::IfThenElse(same, point.v, v);
-      });
-    }
+  // Whether a texture may move by a texel. A pixel of motion is at most √2 times the texels from a
+  // pixel to the next.
+  M may_move(const Cell& c) const {
+    const auto motion = static_cast<float>(exposed_.motion_px);
+    return hn::Ge(load(c.texels_per_pixel2), set(kTexel * kTexel / (2.0F * motion * motion)));
   }
 
-  static Way resting(const Cell& c) {
-    return {load(c.u), load(c.v), set(0.0F), set(0.0F), whole(1)};
-  }
-
-  // The first and the last layer are half a step within the ends of the way.
-  Way way_at(const Block::Run& run, const Cell& c, std::size_t at) const {
-    const VI first = get(first_, at);
-    const VI last = get(last_, at);
-    Way way = resting(c);
-    const auto has_texture = hn::Gt(load(c.level), whole(255));
-    const M moves = float_mask(And(has_texture, hn::Lt(first, last)));
-    if (hn::AllFalse(D(), moves)) return way;
-    V u_first = way.u;
-    V v_first = way.v;
-    V u_last = way.u;
-    V v_last = way.v;
-    coordinates_in(first, moves, at, u_first, v_first);
-    coordinates_in(last, moves, at, u_last, v_last);
-    const V steps = to_float(hn::Max(Sub(last, first), whole(1)));
-    const V longer = Div(Add(steps, set(1.0F)), steps);
-    way.du = Mul(Sub(u_last, u_first), longer);
-    way.dv = Mul(Sub(v_last, v_first), longer);
-    const PreparedScene& scene = part_.shading.scene;
-    const V length2 =
-        Div(squared_length(way.du, way.dv, of_material(run, c, scene.materials[0].texture_width),
-                           of_material(run, c, scene.materials[0].texture_height)),
-            load(c.texels_per_pixel2));
-    const V length = hn::Sqrt(hn::Min(length2, set(kMostTaps * kMostTaps)));
-    way.taps = hn::Max(nearest(Add(length, set(kRoundUp))), whole(1));
-    const M several = And(moves, float_mask(hn::Gt(way.taps, whole(1))));
-    way.u = hn::IfThenElse(several, Mul(set(0.5F), Add(u_first, u_last)), way.u);
-    way.v = hn::IfThenElse(several, Mul(set(0.5F), Add(v_first, v_last)), way.v);
-    way.du = hn::IfThenElseZero(several, way.du);
-    way.dv = hn::IfThenElseZero(several, way.dv);
-    way.taps = hn::IfThenElse(hn::RebindMask(DI(), several), way.taps, whole(1));
-    return way;
-  }
-
-  VU pixels_at(const Block::Run& run, const Cell& c, V u, V v) const {
-    const V one = set(1.0F);
-    if (!run.is_textured) return pixels(colour(c), one, white());
-    return pixels(colour(c), one, sample(part_.shading.scene, load(c.level), u, v));
+  // A texture moves as fast throughout as from where its triangle is seen to the other layer.
+  void set_way(const MaterialRow& material, const Seen& seen, const Seen& other, VI count,
+               const Cell& c, const Place& at, M may_move, Way& way) const {
+    const Point there = point_in(other, at);
+    const auto layer = static_cast<float>(seen.layer);
+    const V each = set(1.0F / (static_cast<float>(other.layer) - layer));
+    const V u_each = Mul(Sub(there.u, way.u), each);
+    const V v_each = Mul(Sub(there.v, way.v), each);
+    const V each2 = Div(
+        squared_length(u_each, v_each, set(material.texture_width), set(material.texture_height)),
+        hn::Max(load(c.texels_per_pixel2), set(1.0F)));
+    const auto all = static_cast<float>(exposed_.count);
+    const M moves = And(may_move, hn::Ge(each2, set(kTexel * kTexel / (all * all))));
+    if (hn::AllFalse(D(), moves)) return;
+    const V layers = to_float(And(count, whole(kNumber - 1)));
+    const V mean = Div(to_float(hn::ShiftRight<8>(And(count, whole(kChanged - 1)))), layers);
+    const V later = hn::IfThenElseZero(moves, Sub(mean, set(layer)));
+    way.u = Add(way.u, Mul(u_each, later));
+    way.v = Add(way.v, Mul(v_each, later));
+    way.du = hn::IfThenElseZero(moves, Mul(u_each, layers));
+    way.dv = hn::IfThenElseZero(moves, Mul(v_each, layers));
+    const V length = hn::IfThenElseZero(moves, Mul(hn::Sqrt(each2), layers));
+    const V taps = hn::Min(Add(length, set(1.5F - kTexel)), set(kMostTaps));
+    way.taps = hn::Max(nearest(taps), whole(1));
   }
 
   // The mean light along the way.
-  Colour along(const Block::Run& run, const Way& way, const Cell& c) const {
-    const LightTable& table = part_.shading.table;
-    if (!run.is_textured) return light_of(table, pixels_at(run, c, way.u, way.v));
+  Colour along(const MaterialRow& material, const Way& way, const Cell& c) const {
     const V step = Div(set(1.0F), to_float(way.taps));
     Colour sum{set(0.0F), set(0.0F), set(0.0F)};
     for (std::int32_t i = 0;; ++i) {
       const M counts = float_mask(hn::Gt(way.taps, whole(i)));
       if (hn::AllFalse(D(), counts)) return sum;
       const V place = Sub(Mul(set(static_cast<float>(i) + 0.5F), step), set(0.5F));
-      const VU here =
-          pixels_at(run, c, Add(way.u, Mul(way.du, place)), Add(way.v, Mul(way.dv, place)));
-      add_to(sum, light_of(table, here), hn::IfThenElseZero(counts, step));
+      const VU here = pixels_at(shading_.scene, material, c, Add(way.u, Mul(way.du, place)),
+                                Add(way.v, Mul(way.dv, place)));
+      add_to(sum, light_of(shading_.table, here), hn::IfThenElseZero(counts, step));
     }
   }
 
   static constexpr float kMostTaps = 8.0F;
-  static constexpr float kRoundUp = 0.4F;
+  static constexpr float kTexel = 1.1F;  // a way of this many texels is looked at in two places
+  // A pixel of motion is at most √2 texels, if it is aslant.
+  static constexpr double kMotionOfOneTap_px = 0.75;
 
-  const Part& part_;
-  std::span<const Layer> layers_;
-  std::span<const TileIds> ids_;
-  Block& b_;
-  TileLight& light_;
+  const Shading& shading_;
+  const Exposed& exposed_;
+  const Tile& tile_;
   TilePixels& pixels_;
   std::size_t middle_;
-  float share_;
-  // The layers in which a pixel sees the same triangle as in the middle one.
-  alignas(64) Whole first_, last_, count_;
-  alignas(64) Whole primitive_;  // the triangle in the middle layer
-  alignas(64) Whole other_;      // whether it is another in the present layer
+  V share_;
+  bool may_need_taps_;
+  TileLight light_;
+  std::int32_t always_ = 0;  // what a pixel counts that sees the same in all layers
+  alignas(64) Whole seen_;   // what each pixel counts that sees the same as in the middle layer
+  Whole others_;  // the same of those that see a triangle, but another in the middle layer
+  Batch batch_;
+  alignas(64) std::array<std::int32_t, kTilePixels + kMaxLanes> seen_of_singles_;
 };
 
 }  // namespace
 
 void shade_on(const Shading& shading, const Layer& layer, const Tile& tile, const TileIds& ids,
               TilePixels& pixels) {
-  Block b;
-  for_each_part(shading, layer, tile, ids, [&](const Part& part) HWY_ATTR {
-    load_ids(part, b);
-    const VU background = background_of(part);
-    const auto put = [&](std::size_t at, VU pixel) HWY_ATTR {
-      hn::Store(pixel, DU(), pixels.data() + part.first_pixel() + at);
-    };
-    for_each_vector(part, [&](std::size_t at) HWY_ATTR { put(at, background); });
-    shade_block(part, b, [&](std::size_t at, VU own) HWY_ATTR {
-      put(at, hn::IfThenElse(hn::RebindMask(DU(), is_empty(b, at)), background, own));
-    });
-  });
+  const VU background = background_of(shading.scene);
+  shade_tile(
+      {shading, layer, tile}, ids,
+      [&](const Place& at) HWY_ATTR { store(background, pixels.data(), at); },
+      [&](const Facet& facet) HWY_ATTR {
+        const MaterialRow& material = shading.scene.materials[facet.material];
+        return [&](const Place& at, const Cell& c)
+                   HWY_ATTR { store(pixels_of(shading.scene, material, c), pixels.data(), at); };
+      });
 }
 
-void shade_mean_on(const Shading& shading, std::span<const Layer> layers, const Tile& tile,
-                   std::span<const TileIds> ids, TilePixels& pixels) {
-  Block b;
-  TileLight light;
-  const std::size_t middle = layers.size() / 2;
-  for_each_part(shading, layers[middle], tile, ids[middle], [&](const Part& part) HWY_ATTR {
-    Mean(part, layers, ids, b, light, pixels).add_up();
-  });
+void shade_mean_on(const Shading& shading, const Exposed& exposed, const Tile& tile,
+                   TilePixels& pixels) {
+  Mean(shading, exposed, tile, pixels).add_up();
 }
 
 void shade_over_on(const Shading& shading, const Layer& layer, const Tile& tile, const TileIds& ids,
                    TilePixels& pixels) {
-  Block b;
-  for_each_part(shading, layer, tile, ids, [&](const Part& part) HWY_ATTR {
-    load_ids(part, b);
-    shade_block<true>(part, b, [&](std::size_t at, VU own) HWY_ATTR {
-      std::uint32_t* const to = pixels.data() + part.first_pixel() + at;
-      const VU before = hn::Load(DU(), to);
-      const VU after = mixed(before, own);
-      hn::Store(hn::IfThenElse(hn::RebindMask(DU(), is_empty(b, at)), before, after), DU(), to);
-    });
-  });
+  shade_tile(
+      {shading, layer, tile}, ids, [](const Place&) {},
+      [&](const Facet& facet) HWY_ATTR {
+        const MaterialRow& material = shading.scene.materials[facet.material];
+        return [&](const Place& at, const Cell& c) HWY_ATTR {
+          const VU own = pixels_of(shading.scene, material, c);
+          store(mixed(load(pixels.data(), at), own), pixels.data(), at);
+        };
+      });
 }
 
 void add_light_on(const LightTable& table, const TilePixels& pixels, int layers, TileLight& light) {
   const V share = set(1.0F / static_cast<float>(layers));
   for (std::size_t i = 0; i < kTilePixels; i += lanes()) {
-    Colour sum = load(light, i);
+    Colour sum = load(light, {i, nullptr});
     add_to(sum, light_of(table, hn::Load(DU(), pixels.data() + i)), share);
-    store(sum, light, i);
+    store(sum, light, {i, nullptr});
   }
 }
 
 void encode_light_on(const LightTable& table, const TileLight& light, TilePixels& pixels) {
   for (std::size_t i = 0; i < kTilePixels; i += lanes()) {
-    hn::Store(packed(table, load(light, i)), DU(), pixels.data() + i);
+    hn::Store(packed(table, load(light, {i, nullptr})), DU(), pixels.data() + i);
   }
 }
 
@@ -366,11 +390,11 @@ void store_row_on(const std::uint32_t* pixels, int count, std::uint8_t* rgb) {
   }
 }
 
-void find_entities_on(const Layer& layer, const TileIds& ids, TilePixels& entities) {
-  for (std::size_t i = 0; i < kTilePixels; i += lanes()) {
-    const VI entity = of_facets(layer, hn::Load(DU(), ids.id.data() + i), &Facet::entity);
-    hn::Store(hn::BitCast(DU(), entity), DU(), entities.data() + i);
-  }
+void find_entities_on(const Layer& layer, const Tile& tile, const TileIds& ids,
+                      TilePixels& entities) {
+  for_each_run(tile, ids, [&](std::size_t begin, std::size_t end) {
+    std::fill(entities.data() + begin, entities.data() + end, layer.entity_of(ids.id[begin]));
+  });
 }
 
 std::size_t end_of_run_on(std::span<const std::uint32_t> values, std::size_t begin) {
@@ -404,9 +428,9 @@ void shade(const Shading& shading, const Layer& layer, const Tile& tile, const T
   HWY_DYNAMIC_DISPATCH(shade_on)(shading, layer, tile, ids, pixels);
 }
 
-void shade_mean(const Shading& shading, std::span<const Layer> layers, const Tile& tile,
-                std::span<const TileIds> ids, TilePixels& pixels) {
-  HWY_DYNAMIC_DISPATCH(shade_mean_on)(shading, layers, tile, ids, pixels);
+void shade_mean(const Shading& shading, const Exposed& exposed, const Tile& tile,
+                TilePixels& pixels) {
+  HWY_DYNAMIC_DISPATCH(shade_mean_on)(shading, exposed, tile, pixels);
 }
 
 void shade_over(const Shading& shading, const Layer& layer, const Tile& tile, const TileIds& ids,
@@ -426,8 +450,8 @@ void store_row(const std::uint32_t* pixels, int count, std::uint8_t* rgb) {
   HWY_DYNAMIC_DISPATCH(store_row_on)(pixels, count, rgb);
 }
 
-void find_entities(const Layer& layer, const TileIds& ids, TilePixels& entities) {
-  HWY_DYNAMIC_DISPATCH(find_entities_on)(layer, ids, entities);
+void find_entities(const Layer& layer, const Tile& tile, const TileIds& ids, TilePixels& entities) {
+  HWY_DYNAMIC_DISPATCH(find_entities_on)(layer, tile, ids, entities);
 }
 
 std::size_t end_of_run(std::span<const std::uint32_t> values, std::size_t begin) {

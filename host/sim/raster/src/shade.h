@@ -5,6 +5,7 @@
 #include "light_table.h"
 #include "prepared_scene.h"
 #include "rasterize.h"
+#include "runs.h"
 #include "shadow_map.h"
 
 #include <array>
@@ -19,6 +20,7 @@ struct Shading {
   const PreparedScene& scene;
   const Lens& lens;
   const std::vector<ShadowMap>& shadows;
+  Runs& runs;  ///< memory for those of a tile
   const LightTable& table = light_table();
 };
 
@@ -30,17 +32,33 @@ struct TileLight {
   alignas(64) std::array<float, kTilePixels> r, g, b;
 };
 
+/// The layers of an exposure that a tile is drawn with: every `step`th.
+struct Exposed {
+  std::span<const Layer> all_layers;
+  std::span<const TileIds> all_ids;
+  std::size_t first, step, count;
+  double motion_px;  ///< during the exposure, at most
+
+  std::size_t place(std::size_t k) const { return first + step * k; }
+  const Layer& layer(std::size_t k) const { return all_layers[place(k)]; }
+  const TileIds& ids(std::size_t k) const { return all_ids[place(k)]; }
+  /// How many keys there are.
+  std::size_t keys() const {
+    return all_layers.back().first_own_key + all_layers.back().coverage.size();
+  }
+};
+
 /// The picture of one layer, without transparent things.
 void shade(const Shading& shading, const Layer& layer, const Tile& tile, const TileIds& ids,
            TilePixels& pixels);
 
-/// The picture of the mean light of several layers, without transparent things. A triangle that a
-/// pixel sees in several layers is shaded once, and its texture is averaged along the way that it
-/// moves.
-void shade_mean(const Shading& shading, std::span<const Layer> layers, const Tile& tile,
-                std::span<const TileIds> ids, TilePixels& pixels);
+/// The picture of the mean light of several layers, without transparent things, whose triangles are
+/// named by keys. A triangle that a pixel sees in several layers is shaded once, and its texture is
+/// averaged along the way that it moves.
+void shade_mean(const Shading& shading, const Exposed& exposed, const Tile& tile,
+                TilePixels& pixels);
 
-/// Mixes the triangles of `ids` into `pixels` by their opacity.
+/// Mixes the transparent triangles of `ids` into `pixels` by their opacity.
 void shade_over(const Shading& shading, const Layer& layer, const Tile& tile, const TileIds& ids,
                 TilePixels& pixels);
 /// Adds the light of pixels, of one out of `layers` layers.
@@ -52,7 +70,7 @@ void encode_light(const LightTable& table, const TileLight& light, TilePixels& p
 void store_row(const std::uint32_t* pixels, int count, std::uint8_t* rgb);
 
 /// The entities that a tile's pixels show.
-void find_entities(const Layer& layer, const TileIds& ids, TilePixels& entities);
+void find_entities(const Layer& layer, const Tile& tile, const TileIds& ids, TilePixels& entities);
 
 /// The first of `values` after `begin` that differs from that one.
 std::size_t end_of_run(std::span<const std::uint32_t> values, std::size_t begin);

@@ -179,7 +179,7 @@ void ShadowMap::draw_tile(std::size_t index) {
                   static_cast<int>(index) / kAcross * kTile_px, kTile_px, kTile_px};
   ids_.inverse_depth.fill(0.0F);
   ids_.id.fill(0);
-  rasterize_nearest(layer_, lens_, tile, layer_.opaque[index], ids_);
+  rasterize_nearest(layer_, lens_, tile, layer_.opaque[index], Names::kPlaces, ids_);
   for_each_row(index, [&](std::size_t in_map, std::size_t in_tile) {
     std::copy_n(ids_.inverse_depth.data() + in_tile, kTile_px, map_.data() + in_map);
   });

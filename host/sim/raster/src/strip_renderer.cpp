@@ -48,66 +48,85 @@ bool is_blind(const Lens& lens, const Tile& tile, int column, int row) {
 
 }  // namespace
 
+void place_layer(const PreparedScene& scene, const Lens& lens,
+                 const std::vector<ShadowMap>& shadows, const View& view, const Strip& strip,
+                 const PixelRect& pixels, double before_end_s, Moment& moment, Layer& layer) {
+  interpolate(view, before_end_s, moment);
+  layer.X_CW = inverse(moment.X_WC);
+  layer.X_WB.swap(moment.X_WB);
+  layer.projection = {view.camera.fx_px, view.camera.fy_px, view.camera.cx_px + layer.offset_x_px,
+                      view.camera.cy_px + layer.offset_y_px, view.near_m};
+  Selection selection;
+  selection.pixels = pixels;
+  selection.hidden = view.hidden;
+  place_triangles(scene, lens, strip, selection, layer);
+  place_lights(scene, shadows, layer);
+}
+
 void StripRenderer::draw(const Job& job, const Strip& strip) {
   place(job, strip);
   for_each_tile(job.lens, strip,
                 [&](const Tile& tile, std::size_t list) { draw_tile(job, tile, list); });
 }
 
-double StripRenderer::nearest_m(const Job& job, const Strip& strip) {
-  place(job, strip);
-  float nearest = 0.0F;
-  for_each_tile(job.lens, strip, [&](const Tile& tile, std::size_t list) {
-    rasterize(job, tile, list);
-    rasterize_nearest(layers_[0], job.lens, tile, layers_[0].transparent[list], ids_[0]);
-    for (int row = 0; row < tile.height; ++row) {
-      const float* const first = ids_[0].inverse_depth.data() + place_of(0, row);
-      nearest = std::max(nearest, *std::max_element(first, first + tile.width));
-    }
-  });
-  return 1.0 / static_cast<double>(nearest);
-}
-
 void StripRenderer::place(const Job& job, const Strip& strip) {
-  const auto layers = static_cast<std::size_t>(job.sampling.layers);
-  if (layers_.size() != layers) layers_.resize(layers);
-  if (ids_.size() != layers) ids_.resize(layers);
-  for (std::size_t i = 0; i < layers; ++i) place_layer(job, strip, i);
+  placed_ = 1;
+  if (job.view.antialias) {
+    const auto most = static_cast<std::size_t>(job.sampling.most_layers());
+    placed_ = most > 1 ? std::max<std::size_t>(most, 9) : kOffsets.size();
+  } else {
+    for_each_tile(job.lens, strip, [&](const Tile& tile, std::size_t) {
+      placed_ = std::max(placed_, layers_of(job, tile));
+    });
+  }
+  if (layers_.size() < placed_) layers_.resize(placed_);
+  if (ids_.size() < placed_) ids_.resize(placed_);
+  const bool is_rolling = job.sampling.band_rows() > 0;
+  const double row =
+      is_rolling ? strip.first_row + 0.5 * (strip.rows - 1) : 0.5 * (job.view.camera.height_px - 1);
+  for (std::size_t i = 0; i < placed_; ++i) {
+    Layer& layer = layers_[i];
+    const Offset offset = job.view.antialias ? kOffsets[i % kOffsets.size()] : Offset{0.0, 0.0};
+    layer.offset_x_px = offset.x_px;
+    layer.offset_y_px = offset.y_px;
+    if (job.middle != nullptr && i == placed_ / 2) {
+      std::swap(layer, *job.middle);
+    } else {
+      place_layer(job.scene, job.lens, job.shadows, job.view, strip, pixels_with(i, job, strip),
+                  before_end_s(job.view, row, static_cast<int>(i), static_cast<int>(placed_)),
+                  moment_, layer);
+    }
+  }
+  if (placed_ > 1) set_keys(std::span(layers_).first(placed_));
 }
 
-void StripRenderer::place_layer(const Job& job, const Strip& strip, std::size_t index) {
-  const View& view = job.view;
-  const double middle_row = strip.first_row + 0.5 * (strip.rows - 1);
-  const double row = job.sampling.bands > 1 ? middle_row : 0.5 * (view.camera.height_px - 1);
-  interpolate(view, before_end_s(view, row, static_cast<int>(index), job.sampling.layers), moment_);
-  Layer& layer = layers_[index];
-  layer.X_CW = inverse(moment_.X_WC);
-  layer.X_WB.swap(moment_.X_WB);
-  const Offset offset = view.antialias ? kOffsets[index % kOffsets.size()] : Offset{0.0, 0.0};
-  layer.offset_x_px = offset.x_px;
-  layer.offset_y_px = offset.y_px;
-  layer.projection = {view.camera.fx_px, view.camera.fy_px, view.camera.cx_px + offset.x_px,
-                      view.camera.cy_px + offset.y_px, view.near_m};
-  Selection selection;
-  selection.hidden = view.hidden;
-  place_triangles(job.scene, job.lens, strip, selection, layer);
-  place_lights(job.scene, job.shadows, layer);
+std::size_t StripRenderer::layers_of(const Job& job, const Tile& tile) const {
+  return job.view.antialias ? placed_ : static_cast<std::size_t>(job.sampling.layers(tile));
+}
+
+// The tiles that have a layer.
+PixelRect StripRenderer::pixels_with(std::size_t layer, const Job& job, const Strip& strip) const {
+  PixelRect pixels = PixelRect::none();
+  for_each_tile(job.lens, strip, [&](const Tile& tile, std::size_t) {
+    const std::size_t step = placed_ / layers_of(job, tile);
+    if (layer % step != step / 2) return;
+    pixels.include({tile.x, tile.y, tile.x + tile.width - 1, tile.y + tile.height - 1});
+  });
+  return pixels;
+}
+
+Exposed StripRenderer::exposed_on(const Job& job, const Tile& tile) const {
+  const std::size_t count = layers_of(job, tile);
+  const std::size_t step = placed_ / count;
+  return {std::span(layers_).first(placed_), ids_, step / 2, step, count,
+          job.sampling.exposed_px(tile)};
 }
 
 void StripRenderer::draw_tile(const Job& job, const Tile& tile, std::size_t list) {
-  rasterize(job, tile, list);
-  const Shading shading{job.scene, job.lens, job.shadows};
-  const bool any_transparent = std::any_of(layers_.begin(), layers_.end(), [&](const Layer& layer) {
-    return !layer.transparent[list].empty();
-  });
+  const Exposed exposed = exposed_on(job, tile);
+  rasterize(job, exposed, tile, list);
   if (!job.picture.rgb.empty()) {
-    if (any_transparent) {
-      shade_with_transparent(job, tile, list);
-    } else if (layers_.size() > 1) {
-      shade_mean(shading, layers_, tile, ids_, pixels_);
-    } else {
-      shade(shading, layers_[0], tile, ids_[0], pixels_);
-    }
+    shade(job, exposed, tile, list);
     if (job.lens.blind_pixels() > 0) darken_blind(job.lens, tile);
     store_rgb(job, tile);
   }
@@ -115,28 +134,45 @@ void StripRenderer::draw_tile(const Job& job, const Tile& tile, std::size_t list
   if (!job.picture.entity.empty()) store_entities(job, tile);
 }
 
-void StripRenderer::rasterize(const Job& job, const Tile& tile, std::size_t list) {
-  for (std::size_t i = 0; i < layers_.size(); ++i) {
+void StripRenderer::rasterize(const Job& job, const Exposed& exposed, const Tile& tile,
+                              std::size_t list) {
+  const Names names = shades_mean(exposed, list) ? Names::kKeys : Names::kPlaces;
+  for (std::size_t k = 0; k < exposed.count; ++k) {
+    const std::size_t i = exposed.place(k);
     clear(job.view.far_m, ids_[i]);
-    rasterize_nearest(layers_[i], job.lens, tile, layers_[i].opaque[list], ids_[i]);
+    rasterize_nearest(layers_[i], job.lens, tile, layers_[i].opaque[list], names, ids_[i]);
   }
 }
 
-void StripRenderer::shade_with_transparent(const Job& job, const Tile& tile, std::size_t list) {
-  const Shading shading{job.scene, job.lens, job.shadows};
-  const auto layers = static_cast<int>(layers_.size());
+// Whether a tile is shaded for several layers at once: nothing in it is transparent.
+bool StripRenderer::shades_mean(const Exposed& exposed, std::size_t list) {
+  if (exposed.count == 1) return false;
+  for (std::size_t k = 0; k < exposed.count; ++k) {
+    if (!exposed.layer(k).transparent[list].empty()) return false;
+  }
+  return true;
+}
+
+void StripRenderer::shade(const Job& job, const Exposed& exposed, const Tile& tile,
+                          std::size_t list) {
+  const Shading shading{job.scene, job.lens, job.shadows, runs_};
+  if (shades_mean(exposed, list)) {
+    shade_mean(shading, exposed, tile, pixels_);
+    return;
+  }
+  const auto layers = static_cast<int>(exposed.count);
   if (layers > 1) light_ = {};
-  for (std::size_t i = 0; i < layers_.size(); ++i) {
-    shade(shading, layers_[i], tile, ids_[i], pixels_);
-    add_transparent(shading, layers_[i], tile, list, ids_[i]);
+  for (std::size_t k = 0; k < exposed.count; ++k) {
+    raster::shade(shading, exposed.layer(k), tile, exposed.ids(k), pixels_);
+    add_transparent(shading, exposed.layer(k), tile, list, exposed.ids(k));
     if (layers > 1) add_light(shading.table, pixels_, layers, light_);
   }
   if (layers > 1) encode_light(shading.table, light_, pixels_);
 }
 
-// From the farthest to the nearest, for each pixel.
 void StripRenderer::add_transparent(const Shading& shading, const Layer& layer, const Tile& tile,
                                     std::size_t list, const TileIds& opaque) {
+  if (layer.transparent[list].empty()) return;
   last_ = opaque;
   while (rasterize_next(layer, shading.lens, tile, layer.transparent[list], last_, next_)) {
     shade_over(shading, layer, tile, next_, pixels_);
@@ -160,7 +196,7 @@ void StripRenderer::store_rgb(const Job& job, const Tile& tile) const {
 }
 
 void StripRenderer::store_depth(const Job& job, const Tile& tile) const {
-  const TileIds& ids = ids_[ids_.size() / 2];
+  const TileIds& ids = ids_[placed_ / 2];
   const auto depth_of = [&](std::size_t i) {
     if (ids.id[i] == 0) return std::numeric_limits<float>::infinity();
     const float z = 1.0F / ids.inverse_depth[i];
@@ -177,7 +213,8 @@ void StripRenderer::store_depth(const Job& job, const Tile& tile) const {
 }
 
 void StripRenderer::store_entities(const Job& job, const Tile& tile) {
-  find_entities(layers_[layers_.size() / 2], ids_[ids_.size() / 2], pixels_);
+  const std::size_t middle = placed_ / 2;
+  find_entities(layers_[middle], tile, ids_[middle], pixels_);
   for (int row = 0; row < tile.height; ++row) {
     std::copy_n(pixels_.data() + place_of(0, row), tile.width,
                 job.picture.entity.data() + place_in_picture(job.lens, tile, row));

@@ -13,6 +13,11 @@
 
 namespace tether::raster {
 
+/// Places what some pixels of a strip show at a time of the view.
+void place_layer(const PreparedScene& scene, const Lens& lens,
+                 const std::vector<ShadowMap>& shadows, const View& view, const Strip& strip,
+                 const PixelRect& pixels, double before_end_s, Moment& moment, Layer& layer);
+
 /// Draws strips of pictures, one after the other. Each thread has its own, with its memory.
 class StripRenderer {
  public:
@@ -23,20 +28,22 @@ class StripRenderer {
     const std::vector<ShadowMap>& shadows;
     const View& view;
     const Picture& picture;
-    Sampling sampling;
+    const Sampling& sampling;
+    /// The whole picture in the middle of the view's time, if a strip may take it; else null.
+    Layer* middle;
   };
 
   void draw(const Job& job, const Strip& strip);
 
-  /// The depth of the nearest visible surface, or `far_m`.
-  double nearest_m(const Job& job, const Strip& strip);
-
  private:
   void place(const Job& job, const Strip& strip);
-  void place_layer(const Job& job, const Strip& strip, std::size_t index);
+  std::size_t layers_of(const Job& job, const Tile& tile) const;
+  PixelRect pixels_with(std::size_t layer, const Job& job, const Strip& strip) const;
+  Exposed exposed_on(const Job& job, const Tile& tile) const;
   void draw_tile(const Job& job, const Tile& tile, std::size_t list);
-  void rasterize(const Job& job, const Tile& tile, std::size_t list);
-  void shade_with_transparent(const Job& job, const Tile& tile, std::size_t list);
+  void rasterize(const Job& job, const Exposed& exposed, const Tile& tile, std::size_t list);
+  static bool shades_mean(const Exposed& exposed, std::size_t list);
+  void shade(const Job& job, const Exposed& exposed, const Tile& tile, std::size_t list);
   void add_transparent(const Shading& shading, const Layer& layer, const Tile& tile,
                        std::size_t list, const TileIds& opaque);
   void darken_blind(const Lens& lens, const Tile& tile);
@@ -44,8 +51,10 @@ class StripRenderer {
   void store_depth(const Job& job, const Tile& tile) const;
   void store_entities(const Job& job, const Tile& tile);
 
-  std::vector<Layer> layers_;
-  std::vector<TileIds> ids_;  ///< of each layer, in the tile
+  std::size_t placed_ = 0;     ///< layers of the tile that has most
+  std::vector<Layer> layers_;  ///< so many, or more
+  std::vector<TileIds> ids_;   ///< of each layer, in the tile
+  Runs runs_;
   TileIds last_{};
   TileIds next_{};
   TileLight light_{};

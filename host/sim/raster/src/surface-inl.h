@@ -21,16 +21,36 @@ HWY_BEFORE_NAMESPACE();
 namespace tether::raster::HWY_NAMESPACE {
 namespace {
 
-// A layer's part of a tile, from one of its rows on.
-struct Part {
+// A tile of a layer, to be shaded.
+struct LayerTile {
   const Shading& shading;
   const Layer& layer;
   const Tile& tile;
-  const TileIds& ids;
-  int first_row, rows;
-
-  std::size_t first_pixel() const { return static_cast<std::size_t>(first_row) * kTile_px; }
 };
+
+// The pixels of a vector: neighbours in a row of the tile, or any of its pixels, of which some may
+// be the same.
+struct Place {
+  std::size_t first;           // of the neighbours
+  const std::int32_t* places;  // of each pixel; null for neighbours
+};
+
+// The numbers of a tile's pixels in a vector.
+template <class T>
+HWY_INLINE auto load(const T* plane, const Place& at) {
+  const hn::Rebind<T, D> d;
+  if (at.places == nullptr) return hn::LoadU(d, plane + at.first);
+  return hn::GatherIndex(d, plane, hn::Load(DI(), at.places));
+}
+template <class T, class Vector>
+HWY_INLINE void store(Vector numbers, T* plane, const Place& at) {
+  const hn::Rebind<T, D> d;
+  if (at.places == nullptr) {
+    hn::StoreU(numbers, d, plane + at.first);
+  } else {
+    hn::ScatterIndex(numbers, d, plane, hn::Load(DI(), at.places));
+  }
+}
 
 // Where some pixels are in the undistorted picture, and the slopes of their rays.
 struct Pixels {
@@ -38,82 +58,70 @@ struct Pixels {
   V ray_x, ray_y;
 };
 
-// The pixels of a part. A copy of what it takes: nothing that is stored can change it.
+// Where the pixels of a tile look. A copy of what it takes: nothing that is stored can change it.
 class Sight {
  public:
-  explicit Sight(const Part& part)
-      : lens_(part.shading.lens),
+  explicit Sight(const LayerTile& on)
+      : lens_(on.shading.lens),
         is_grid_(lens_.is_grid()),
-        x_(part.tile.x),
-        y_(part.tile.y + part.first_row),
-        offset_x_(static_cast<float>(part.layer.offset_x_px)),
-        offset_y_(static_cast<float>(part.layer.offset_y_px)),
-        cx_(static_cast<float>(part.layer.projection.cx)),
-        cy_(static_cast<float>(part.layer.projection.cy)),
-        per_fx_(static_cast<float>(1.0 / part.layer.projection.fx)),
-        per_fy_(static_cast<float>(1.0 / part.layer.projection.fy)) {}
+        x_(on.tile.x),
+        y_(on.tile.y),
+        offset_x_(static_cast<float>(on.layer.offset_x_px)),
+        offset_y_(static_cast<float>(on.layer.offset_y_px)),
+        cx_(static_cast<float>(on.layer.projection.cx)),
+        cy_(static_cast<float>(on.layer.projection.cy)),
+        per_fx_(static_cast<float>(1.0 / on.layer.projection.fx)),
+        per_fy_(static_cast<float>(1.0 / on.layer.projection.fy)) {}
 
-  // From pixel `at` of the part on, all in one row.
-  HWY_INLINE Pixels pixels(std::size_t at) const {
-    const int column = x_ + static_cast<int>(at % kTile_px);
-    const int row = y_ + static_cast<int>(at / kTile_px);
-    Pixels p;
-    if (is_grid_) {
-      p.x = Add(Add(lane_numbers(), set(static_cast<float>(column))), set(offset_x_));
-      const float y = static_cast<float>(row) + offset_y_;
-      p.y = set(y);
-      p.ray_y = set((y - cy_) * per_fy_);
-    } else {
-      const std::size_t sample =
-          static_cast<std::size_t>(row) * lens_.stride() + static_cast<std::size_t>(column);
-      const V scale = set(1.0F / kSubpixels);
-      p.x = Mul(to_float(hn::LoadU(DI(), lens_.x().data() + sample)), scale);
-      p.y = Mul(to_float(hn::LoadU(DI(), lens_.y().data() + sample)), scale);
-      p.x = Add(p.x, set(offset_x_));
-      p.y = Add(p.y, set(offset_y_));
-      p.ray_y = Mul(Sub(p.y, set(cy_)), set(per_fy_));
-    }
+  HWY_INLINE Pixels pixels(const Place& at) const {
+    Pixels p = at.places == nullptr ? neighbours(at.first) : any(hn::Load(DI(), at.places));
+    p.x = Add(p.x, set(offset_x_));
+    p.y = Add(p.y, set(offset_y_));
     p.ray_x = Mul(Sub(p.x, set(cx_)), set(per_fx_));
+    p.ray_y = Mul(Sub(p.y, set(cy_)), set(per_fy_));
     return p;
   }
 
  private:
+  HWY_INLINE Pixels neighbours(std::size_t at) const {
+    const int column = x_ + static_cast<int>(at % kTile_px);
+    const int row = y_ + static_cast<int>(at / kTile_px);
+    Pixels p;
+    if (is_grid_) {
+      p.x = Add(lane_numbers(), set(static_cast<float>(column)));
+      p.y = set(static_cast<float>(row));
+    } else {
+      const std::size_t sample =
+          static_cast<std::size_t>(row) * lens_.stride() + static_cast<std::size_t>(column);
+      p.x = in_pixels(hn::LoadU(DI(), lens_.x().data() + sample));
+      p.y = in_pixels(hn::LoadU(DI(), lens_.y().data() + sample));
+    }
+    return p;
+  }
+  HWY_INLINE Pixels any(VI at) const {
+    static_assert(kTile_px == 32);
+    const VI column = Add(And(at, whole(31)), whole(x_));
+    const VI row = Add(hn::ShiftRight<5>(at), whole(y_));
+    Pixels p;
+    if (is_grid_) {
+      p.x = to_float(column);
+      p.y = to_float(row);
+    } else {
+      const VI sample = Add(Mul(row, whole(static_cast<std::int32_t>(lens_.stride()))), column);
+      p.x = in_pixels(hn::GatherIndex(DI(), lens_.x().data(), sample));
+      p.y = in_pixels(hn::GatherIndex(DI(), lens_.y().data(), sample));
+    }
+    return p;
+  }
+  static HWY_INLINE V in_pixels(VI samples) {
+    return Mul(to_float(samples), set(1.0F / kSubpixels));
+  }
+
   const Lens& lens_;
   bool is_grid_;
   int x_, y_;
   float offset_x_, offset_y_, cx_, cy_, per_fx_, per_fy_;
 };
-
-// Calls `use` with each number of some pixels that is not 0, less 1; with its pixels, and with
-// whether it is the first.
-template <class Use>
-HWY_INLINE void for_each_number(VU ids, const Use& use) {
-  const DI di;
-  const VI id = hn::BitCast(di, ids);
-  auto rest = hn::Gt(id, whole(0));
-  if (hn::AllFalse(di, rest)) return;
-  alignas(64) std::array<std::int32_t, kMaxLanes> all;
-  std::int32_t one = hn::GetLane(id);
-  const auto take_next = [&](auto is_first) HWY_ATTR {
-    const auto same = hn::Eq(id, whole(one));
-    rest = hn::AndNot(same, rest);
-    use(static_cast<std::size_t>(one - 1), same, is_first);
-  };
-  const auto find_next = [&]() HWY_ATTR {
-    one = all[static_cast<std::size_t>(hn::FindFirstTrue(di, rest))];
-  };
-  if (one == 0) {
-    hn::Store(id, di, all.data());
-    find_next();
-  }
-  take_next(std::true_type());
-  if (hn::AllFalse(di, rest)) return;
-  hn::Store(id, di, all.data());
-  do {
-    find_next();
-    take_next(std::false_type());
-  } while (!hn::AllFalse(di, rest));
-}
 
 HWY_INLINE V plane(const std::array<float, 3>& p, V dx, V dy) {
   return Add(Add(set(p[0]), Mul(set(p[2]), dy)), Mul(set(p[1]), dx));
@@ -124,13 +132,16 @@ struct Spot {
   V dx, dy, z;
 };
 
-HWY_INLINE Spot spot(const Facet& f, const Pixels& p, V z) {
-  return {Sub(p.x, set(f.x_ref)), Sub(p.y, set(f.y_ref)), z};
-}
-
 // A value whose plane is over z, within the least and the most of the corners, for edges' sake.
 HWY_INLINE V value_at(const std::array<float, 3>& over_z, float low, float high, const Spot& s) {
   return hn::Min(hn::Max(Mul(s.z, plane(over_z, s.dx, s.dy)), set(low)), set(high));
+}
+
+HWY_INLINE Spot spot(const DepthPlane& depth, const Pixels& p) {
+  const V dx = Sub(p.x, set(depth.x_ref));
+  const V dy = Sub(p.y, set(depth.y_ref));
+  const V inverse = hn::Min(hn::Max(plane(depth.plane, dx, dy), set(depth.low)), set(depth.high));
+  return {dx, dy, Div(set(1.0F), inverse)};
 }
 
 struct Normal {
@@ -163,41 +174,12 @@ HWY_INLINE Normal normal_at(const Facet& f, const Spot& s) {
 template <class T>
 using Lanes = std::array<T, hn::MaxLanes(D())>;
 
-// The pixels of a vector.
+// The pixels of a vector, lit, and where they are in their texture.
 struct Cell {
   alignas(64) Lanes<float> r, g, b;  // under its lights, before the texture; at most 1
   Lanes<float> u, v;                 // in its texture
-  Lanes<float> texels_per_pixel2;    // of its largest size, squared; at least 1
+  Lanes<float> texels_per_pixel2;    // of its largest size, squared
   Lanes<std::int32_t> level;         // 256 times the row of PreparedScene::levels
-  Lanes<std::int32_t> material;      // rows of PreparedScene::materials, unless the run is flat
-};
-
-// Some rows of a tile, step by step: each step goes over all pixels, a vector at a time. Pixels
-// that see different triangles share a vector from the second step on. So few rows stay in the
-// cache.
-struct Block {
-  static constexpr int kRows = 4;
-  static constexpr std::size_t kPixels = std::size_t{kRows} * kTile_px;
-
-  // Vectors that follow each other, with triangles in them.
-  struct Run {
-    const Facet* flat;         // the triangle of all their pixels, if it is one and flat; else null
-    std::uint16_t first, end;  // of `places`
-    bool is_textured;
-  };
-
-  alignas(64) std::array<std::uint32_t, kPixels> ids;  // the input: 0 where nothing is to be shaded
-  std::array<Cell, kPixels / hn::MaxLanes(D())> cells;
-  std::array<Run, kPixels> all_runs;
-  std::array<std::uint16_t, kPixels> all_places;
-  std::size_t run_count;
-
-  Cell& cell(std::size_t at) { return cells[at / hn::MaxLanes(D())]; }
-  const Cell& cell(std::size_t at) const { return cells[at / hn::MaxLanes(D())]; }
-  std::span<const Run> runs() const { return {all_runs.data(), run_count}; }
-  std::span<const std::uint16_t> places(const Run& run) const {
-    return std::span(all_places).subspan(run.first, run.end - run.first);
-  }
 };
 
 HWY_INLINE V load(const Lanes<float>& from) {
@@ -231,13 +213,6 @@ HWY_INLINE VU packed(VI r, VI g, VI b) {
 HWY_INLINE VU packed(const Colour& c, V alpha) {
   return hn::Or(packed(to_byte(c.r), to_byte(c.g), to_byte(c.b)),
                 hn::BitCast(DU(), hn::ShiftLeft<24>(to_byte(alpha))));
-}
-
-// A number of each pixel's material, and that of the first material.
-HWY_INLINE V of_material(const Block::Run& run, const Cell& c, const float& of_first) {
-  constexpr std::int32_t kFloats = sizeof(MaterialRow) / sizeof(float);
-  if (run.flat != nullptr) return set((&of_first)[run.flat->material * kFloats]);
-  return hn::GatherIndex(D(), &of_first, Mul(load(c.material), whole(kFloats)));
 }
 
 }  // namespace

@@ -17,25 +17,27 @@ namespace tether::raster::HWY_NAMESPACE {
 namespace {
 
 // Texture coordinates, and the texels of the largest size from a pixel to the next, squared: along
-// x or y, whichever are more. At least 1.
+// x or y, whichever are more.
 struct TexturePoint {
   V u, v;
   V texels_per_pixel2;
 };
 
+// What is added to the coordinate of corner 1.
+HWY_INLINE V added_at(const Facet::Coordinate& c, const Spot& s) {
+  return value_at(c.added, c.low, c.high, s);
+}
+
 HWY_INLINE TexturePoint texture_point(const Facet& f, const Spot& s) {
-  const auto added = [&](const Facet::Coordinate& c)
-                         HWY_ATTR { return value_at(c.added, c.low, c.high, s); };
-  const V u = added(f.u);
-  const V v = added(f.v);
+  const V u = added_at(f.u, s);
+  const V v = added_at(f.v, s);
   const auto squared_change = [&](std::size_t axis) HWY_ATTR {
     const V of_u = Sub(set(f.u.change[axis]), Mul(u, set(f.u.shrinkage[axis])));
     const V of_v = Sub(set(f.v.change[axis]), Mul(v, set(f.v.shrinkage[axis])));
     return Add(Mul(of_u, of_u), Mul(of_v, of_v));
   };
   const V square = Mul(hn::Max(squared_change(0), squared_change(1)), Mul(s.z, s.z));
-  return {Add(set(f.u.first), u), Add(set(f.v.first), v),
-          hn::Min(hn::Max(square, set(1.0F)), set(1e12F))};
+  return {Add(set(f.u.first), u), Add(set(f.v.first), v), hn::Min(square, set(1e12F))};
 }
 
 // Two numbers of 16 bits for each pixel: their products, and the upper halves of these.
@@ -206,8 +208,9 @@ HWY_INLINE VI log2_times_128(V x) {
 // Which size of a texture to look at, and how far to go to the next: 256 times the row of
 // PreparedScene::levels. As OpenGL.
 HWY_INLINE VI level_of(const MaterialRow& m, const TexturePoint& p) {
-  return Add(hn::Min(log2_times_128(p.texels_per_pixel2), whole(256 * (m.levels - 1))),
-             whole(256 * m.first_level));
+  return Add(
+      hn::Min(log2_times_128(hn::Max(p.texels_per_pixel2, set(1.0F))), whole(256 * (m.levels - 1))),
+      whole(256 * m.first_level));
 }
 
 // One size of a texture for each pixel.

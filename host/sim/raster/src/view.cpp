@@ -20,22 +20,18 @@ double angle_turned(const Pose& a, const Pose& b) {
   return 2.0 * norm(Vec3{q.x, q.y, q.z});
 }
 
-double step_motion_px(const View& view, std::size_t step, std::span<const double> radii_m,
-                      double nearest_m) {
-  const double focal_px = std::max(view.camera.fx_px, view.camera.fy_px);
-  const Instant& from = view.instants[step];
-  const Instant& to = view.instants[step + 1];
-  double of_bodies = 0.0;
-  for (std::size_t i = 0; i < radii_m.size(); ++i) {
-    if (view.hidden == i) continue;
-    const double surface_m = distance_moved(from.X_WB[i], to.X_WB[i]) +
-                             angle_turned(from.X_WB[i], to.X_WB[i]) * radii_m[i];
-    const double near_m = std::max(view.near_m, norm(to.X_WB[i].p - to.X_WC.p) - radii_m[i]);
-    of_bodies = std::max(of_bodies, surface_m / near_m);
+double focal_px(const View& view) {
+  return std::max(view.camera.fx_px, view.camera.fy_px);
+}
+
+// The most of what `of_step` gives for two instants that follow each other, throughout the window.
+template <class OfStep>
+double throughout(const View& view, const OfStep& of_step) {
+  double most = 0.0;
+  for (std::size_t i = 0; i + 1 < view.instants.size(); ++i) {
+    most = std::max(most, of_step(view.instants[i], view.instants[i + 1]));
   }
-  const double of_camera =
-      angle_turned(from.X_WC, to.X_WC) + distance_moved(from.X_WC, to.X_WC) / nearest_m;
-  return focal_px * (of_camera + of_bodies);
+  return most > 0.0 ? most * (view.exposure_s + view.readout_s) / view.spacing_s : 0.0;
 }
 
 }  // namespace
@@ -56,11 +52,24 @@ void interpolate(const View& view, double before_end_s, Moment& moment) {
 }
 
 double motion_px(const View& view, std::span<const double> body_radii_m, double nearest_m) {
-  double fastest_px = 0.0;
-  for (std::size_t i = 0; i + 1 < view.instants.size(); ++i) {
-    fastest_px = std::max(fastest_px, step_motion_px(view, i, body_radii_m, nearest_m));
+  double of_bodies = 0.0;
+  for (std::size_t i = 0; i < body_radii_m.size(); ++i) {
+    of_bodies = std::max(of_bodies, body_motion_px(view, i, body_radii_m[i]));
   }
-  return fastest_px > 0.0 ? fastest_px * (view.exposure_s + view.readout_s) / view.spacing_s : 0.0;
+  return of_bodies + throughout(view, [&](const Instant& from, const Instant& to) {
+           return focal_px(view) * (angle_turned(from.X_WC, to.X_WC) +
+                                    distance_moved(from.X_WC, to.X_WC) / nearest_m);
+         });
+}
+
+double body_motion_px(const View& view, std::size_t body, double radius_m) {
+  if (view.hidden == body) return 0.0;
+  return throughout(view, [&](const Instant& from, const Instant& to) {
+    const Pose& before = from.X_WB[body];
+    const Pose& after = to.X_WB[body];
+    const double moved_m = distance_moved(before, after) + angle_turned(before, after) * radius_m;
+    return focal_px(view) * moved_m / std::max(view.near_m, norm(after.p - to.X_WC.p) - radius_m);
+  });
 }
 
 }  // namespace tether::raster

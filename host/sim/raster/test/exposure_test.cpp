@@ -1,6 +1,7 @@
 #include "exposure.h"
 
 #include "light_table.h"
+#include "strip_renderer.h"
 #include "test_scenes.h"
 
 #include <cmath>
@@ -42,6 +43,21 @@ View plain_view(const Flight& flight, double before_end_s, Moment& moment, Insta
   View view = flight.view;
   view.instants = {&instant, 1};
   return view;
+}
+
+Sampling sampling_of(const Scene& scene, const View& view) {
+  const Lens lens(view.camera);
+  const int width = view.camera.width_px;
+  const int height = view.camera.height_px;
+  Moment moment;
+  Layer middle;
+  place_layer(scene.prepared(), lens, {}, view, {0, height}, {0, 0, width - 1, height - 1},
+              0.5 * (view.exposure_s + view.readout_s), moment, middle);
+  return {view, lens, scene.body_radii_m(), middle};
+}
+
+Tile tile_at(int column, int row) {
+  return {column / kTile_px * kTile_px, row, 1, 1};
 }
 
 TEST(Exposure, OfAStillSceneIsThePlainPicture) {
@@ -114,11 +130,10 @@ TEST(Exposure, ShowsEachPixelWhatItsRayMeetsInTheTimeOfItsRow) {
     view.exposure_s = kind & 2 ? 0.01 : 0.0;
     view.readout_s = kind & 4 ? 0.02 : 0.0;
     const Sampling sampling =
-        choose_sampling(view, motion_px(view, scene.body_radii_m(), MovingEdge::kDepth_m - 0.5));
-    EXPECT_TRUE(view.exposure_s == 0.0 || sampling.layers > 2) << sampling.layers;
-    EXPECT_TRUE(view.readout_s == 0.0 || sampling.bands > 9) << sampling.bands;
+        view.exposure_s + view.readout_s > 0.0 ? sampling_of(scene, view) : Sampling();
+    EXPECT_TRUE(view.exposure_s == 0.0 || sampling.most_layers() > 2) << sampling.most_layers();
+    EXPECT_TRUE(view.readout_s == 0.0 || sampling.band_rows() <= 16) << sampling.band_rows();
     const double off_px = view.readout_s > 0.0 ? 0.26 : 0.01;
-    const double off_light = sampling.layers > 1 ? 0.5 / sampling.layers + 0.02 : 0.0;
     const Drawing drawing = draw(renderer, view);
     for (int row = 1; row < view.camera.height_px; row += 9) {
       double before = 0.0;
@@ -129,6 +144,8 @@ TEST(Exposure, ShowsEachPixelWhatItsRayMeetsInTheTimeOfItsRow) {
         };
         const double light =
             light_table().light[static_cast<std::size_t>(drawing.at(column, row)[0])] / 65535.0;
+        const int layers = sampling.layers(tile_at(column, row));
+        const double off_light = layers > 1 ? 0.5 / layers + 0.02 : 0.0;
         const double left = expected(-off_px);
         const double right = expected(off_px);
         ASSERT_GE(light, left - off_light) << kind << ": " << column << ", " << row;
@@ -174,17 +191,105 @@ TEST(Exposure, AveragesTheLightOfItsInstants) {
   }
 }
 
-TEST(Exposure, DividesTimeByTheMotionInThePicture) {
+// A camera that moves before a wall at z = 2, in two instants.
+struct Shift {
+  Shift(const Vec3& p_m, double turn_rad, double exposure_s, double readout_s)
+      : from{{{-p_m.x, -p_m.y, -p_m.z}, uav::from_axis_angle({0.0, 1.0, 0.0}, -turn_rad)}, {}},
+        instants{from, {}} {
+    view.camera = small_camera(640, 480);
+    view.camera.fx_px = view.camera.fy_px = 400.0;
+    view.instants = instants;
+    view.exposure_s = exposure_s;
+    view.readout_s = readout_s;
+    view.spacing_s = exposure_s + readout_s;
+  }
+
+  Instant from;
+  std::array<Instant, 2> instants;
   View view;
-  view.camera = small_camera(640, 480);
-  EXPECT_EQ(choose_sampling(view, 50.0), (Sampling{1, 1}));
-  view.exposure_s = 0.01;
-  EXPECT_EQ(choose_sampling(view, 0.0), (Sampling{1, 1}));
-  EXPECT_EQ(choose_sampling(view, 3.5), (Sampling{4, 1}));
-  EXPECT_EQ(choose_sampling(view, 1e9), (Sampling{16, 1}));
-  view.readout_s = 0.03;
-  EXPECT_EQ(choose_sampling(view, 4.0), (Sampling{2, 6}));
-  EXPECT_EQ(choose_sampling(view, 1e9), (Sampling{16, 120}));
+};
+
+TEST(Exposure, DividesTimeByTheMotionInThePicture) {
+  const Scene scene(plain_parts(rectangle(-99, -99, 99, 99, 2), {1, 1, 1}));
+  struct Case {
+    double shift_px;
+    int layers;
+  };
+  for (const Case& c : std::vector<Case>{{0.0, 1},
+                                         {0.001, 1},
+                                         {0.003, 3},
+                                         {2.9, 3},
+                                         {3.1, 9},
+                                         {8.9, 9},
+                                         {9.1, 27},
+                                         {900.0, 27}}) {
+    const Shift shift({c.shift_px / 200.0, 0.0, 0.0}, 0.0, 0.01, 0.0);
+    const Sampling sampling = sampling_of(scene, shift.view);
+    EXPECT_NEAR(sampling.exposed_px(tile_at(320, 240)), c.shift_px, 1e-4 * c.shift_px);
+    EXPECT_EQ(sampling.layers(tile_at(320, 240)), c.layers) << c.shift_px;
+    EXPECT_EQ(sampling.band_rows(), 0);
+  }
+  for (const Case& c : std::vector<Case>{
+           {0.0, 0}, {0.4, 0}, {1.2, 192}, {7.0, 32}, {8.0, 28}, {30.0, 8}, {999.0, 4}}) {
+    const Shift shift({c.shift_px / 200.0, 0.0, 0.0}, 0.0, 0.0, 0.02);
+    EXPECT_EQ(sampling_of(scene, shift.view).band_rows(), c.layers) << c.shift_px;
+  }
+}
+
+// What is seen moves by no more than was expected of its tile.
+TEST(Exposure, ExpectsNoLessMotionThanThereIs) {
+  const Scene scene(plain_parts(crumpled_sheet(3, 9, 5.0F), {1, 1, 1}));
+  Renderer renderer(scene);
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const auto some = [&](std::uint64_t i) { return drawn(seed, i, -0.05, 0.05); };
+    const Shift shift({some(0), some(1), some(2)}, 0.2 * some(3), 0.01, 0.0);
+    View view = shift.view;
+    if (seed % 2 == 1) view.camera = bent_camera(320, 240);
+    const Sampling sampling = sampling_of(scene, view);
+    View last = view;
+    last.instants = last.instants.last(1);
+    const Drawing drawing = draw(renderer, last);
+    const Pose X_then_now = inverse(shift.from.X_WC) * shift.instants[1].X_WC;
+    uav::CameraModel straight = view.camera;
+    straight.k1 = straight.k2 = straight.k3 = straight.p1 = straight.p2 = 0.0;
+    for (std::uint64_t i = 10; i < 200; ++i) {
+      const int column = static_cast<int>(drawn(seed, i, 0, view.camera.width_px));
+      const int row = static_cast<int>(drawn(seed, 1000 + i, 0, view.camera.height_px));
+      const float z =
+          drawing.depth_m[static_cast<std::size_t>(row * view.camera.width_px + column)];
+      if (!std::isfinite(z)) continue;
+      const Vec3 p = static_cast<double>(z) * view.camera.unproject({1.0 * column, 1.0 * row});
+      const auto now = straight.project(p);
+      const auto then = straight.project(transform(X_then_now, p));
+      const double moved_px = std::hypot(now->u_px - then->u_px, now->v_px - then->v_px);
+      // Motion is a little uneven in the picture.
+      EXPECT_LE(moved_px, 1.1 * sampling.exposed_px(tile_at(column, row)) + 0.01) << seed;
+    }
+  }
+}
+
+TEST(Exposure, ExpectsLittleMotionWhereTheCameraFliesTo) {
+  const Scene scene(plain_parts(rectangle(-99, -99, 99, 99, 2), {1, 1, 1}));
+  const Shift shift({0.0, 0.0, 0.05}, 0.0, 0.01, 0.0);
+  const Sampling sampling = sampling_of(scene, shift.view);
+  EXPECT_LT(sampling.exposed_px(tile_at(320, 240)), 1.2);
+  EXPECT_GT(sampling.exposed_px(tile_at(0, 240)), 7.5);
+}
+
+TEST(Exposure, ExpectsTheMotionOfABodyWhereItMayBe) {
+  SceneParts parts = plain_parts(box(0.2F), {1, 1, 1});
+  parts.instances[0].body = 0;
+  const Scene scene(parts);
+  const std::array<Pose, 2> bodies{Pose{{0.0, 0.0, 5.0}, {}}, Pose{{0.05, 0.0, 5.0}, {}}};
+  const std::array instants{Instant{{}, {&bodies[0], 1}}, Instant{{}, {&bodies[1], 1}}};
+  View view = Shift({}, 0.0, 0.01, 0.0).view;
+  view.instants = instants;
+  const Sampling sampling = sampling_of(scene, view);
+  EXPECT_GT(sampling.exposed_px(tile_at(320, 240)), 4.0);
+  EXPECT_EQ(sampling.exposed_px(tile_at(20, 240)), 0.0);
+  EXPECT_EQ(sampling.exposed_px(tile_at(320, 20)), 0.0);
+  view.hidden = 0;
+  EXPECT_EQ(sampling_of(scene, view).most_layers(), 1);
 }
 
 // For any shutter: the layers of a row are the middles of equal parts of [e − exposure, e].
@@ -196,7 +301,7 @@ TEST(Exposure, OfEachRowIsItsPartOfTheWindow) {
     view.readout_s = seed % 7 == 0 ? 0.0 : drawn(seed, 2, 0.0, 0.05);
     const int rows = view.camera.height_px;
     const int row = static_cast<int>(drawn(seed, 3, 0, rows));
-    const int layers = static_cast<int>(drawn(seed, 4, 1, 17));
+    const int layers = static_cast<int>(drawn(seed, 4, 1, 28));
     const double late_s = rows == 1 ? 0.0 : view.readout_s * (rows - 1 - row) / (rows - 1);
     const double part_s = view.exposure_s / layers;
     for (int k = 0; k < layers; ++k) {

@@ -67,4 +67,7 @@ void interpolate(const View& view, double before_end_s, Moment& moment);
 /// its origin than its radius, and nothing seen is nearer than `nearest_m`.
 double motion_px(const View& view, std::span<const double> body_radii_m, double nearest_m);
 
+/// The same for the surface of one body alone, seen by a camera at rest.
+double body_motion_px(const View& view, std::size_t body, double radius_m);
+
 }  // namespace tether::raster
