@@ -1,8 +1,8 @@
 #pragma once
 
-#include "layer.h"
-#include "lens.h"
-#include "rasterize.h"
+#include "place/layer.h"
+#include "place/lens.h"
+#include "place/rasterize.h"
 
 #include <cstdint>
 #include <span>

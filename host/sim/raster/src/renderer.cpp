@@ -1,8 +1,8 @@
 #include "exposure.h"
-#include "lens.h"
-#include "prepared_scene.h"
-#include "shade.h"
-#include "shadow_map.h"
+#include "place/lens.h"
+#include "place/shadow_map.h"
+#include "scene/prepared_scene.h"
+#include "shade/shade.h"
 #include "strip_renderer.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "strip_renderer.h"
 
-#include "lights.h"
+#include "place/lights.h"
 
 #include <algorithm>
 #include <array>

@@ -1,11 +1,11 @@
 #pragma once
 
 #include "exposure.h"
-#include "layer.h"
-#include "lens.h"
-#include "rasterize.h"
-#include "shade.h"
-#include "shadow_map.h"
+#include "place/layer.h"
+#include "place/lens.h"
+#include "place/rasterize.h"
+#include "place/shadow_map.h"
+#include "shade/shade.h"
 
 #include <vector>
 

@@ -5,7 +5,7 @@
 #define TETHER_RASTER_VECTOR_INL_H_
 #endif
 
-#include "prepared_scene.h"
+#include "scene/prepared_scene.h"
 
 #include <array>
 #include <cstddef>

@@ -1,6 +1,6 @@
 #include "exposure.h"
 
-#include "light_table.h"
+#include "shade/light_table.h"
 #include "strip_renderer.h"
 #include "test_scenes.h"
 

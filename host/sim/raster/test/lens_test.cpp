@@ -1,4 +1,4 @@
-#include "lens.h"
+#include "place/lens.h"
 
 #include "test_scenes.h"
 

@@ -1,8 +1,8 @@
-#include "clip.h"
-#include "shadow_map.h"
+#include "place/clip.h"
+#include "place/shadow_map.h"
+#include "place/transform.h"
 #include "strip_renderer.h"
 #include "test_scenes.h"
-#include "transform.h"
 
 #include <gmock/gmock.h>
 

@@ -1,6 +1,6 @@
-#include "lens.h"
-#include "prepared_scene.h"
-#include "rasterize.h"
+#include "place/lens.h"
+#include "place/rasterize.h"
+#include "scene/prepared_scene.h"
 #include "test_scenes.h"
 
 #include <algorithm>

@@ -1,9 +1,9 @@
-#include "shade.h"
+#include "shade/shade.h"
 
-#include "light_table.h"
-#include "lights.h"
+#include "place/lights.h"
+#include "scene/trigonometry.h"
+#include "shade/light_table.h"
 #include "test_scenes.h"
-#include "trigonometry.h"
 
 #include <cmath>
 #include <numbers>

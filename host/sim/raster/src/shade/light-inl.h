@@ -5,8 +5,8 @@
 #define TETHER_RASTER_LIGHT_INL_H_
 #endif
 
-#include "shade.h"
-#include "surface-inl.h"
+#include "shade/shade.h"
+#include "shade/surface-inl.h"
 #include "vector-inl.h"
 
 #include <array>

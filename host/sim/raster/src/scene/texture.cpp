@@ -1,4 +1,4 @@
-#include "prepared_scene.h"
+#include "scene/prepared_scene.h"
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
-#include "layer.h"
+#include "place/layer.h"
 
-#include "facet.h"
+#include "place/facet.h"
 
 #include <algorithm>
 #include <array>

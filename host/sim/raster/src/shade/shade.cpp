@@ -1,6 +1,6 @@
-#include "shade.h"
+#include "shade/shade.h"
 
-#include "light_table.h"
+#include "shade/light_table.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -8,10 +8,10 @@
 #include <utility>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "shade.cpp"
+#define HWY_TARGET_INCLUDE "shade/shade.cpp"
 #include <hwy/foreach_target.h>
 //
-#include "batch-inl.h"
+#include "shade/batch-inl.h"
 #include "vector-inl.h"
 
 #include <hwy/highway.h>

@@ -5,11 +5,11 @@
 #define TETHER_RASTER_BATCH_INL_H_
 #endif
 
-#include "light-inl.h"
-#include "runs.h"
-#include "shade.h"
-#include "surface-inl.h"
-#include "texture-inl.h"
+#include "shade/light-inl.h"
+#include "shade/runs.h"
+#include "shade/shade.h"
+#include "shade/surface-inl.h"
+#include "shade/texture-inl.h"
 #include "vector-inl.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "lens.h"
-#include "prepared_scene.h"
+#include "place/lens.h"
+#include "scene/prepared_scene.h"
 
 #include <array>
 #include <cstdint>

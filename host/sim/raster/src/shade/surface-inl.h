@@ -5,9 +5,9 @@
 #define TETHER_RASTER_SURFACE_INL_H_
 #endif
 
-#include "layer.h"
-#include "rasterize.h"
-#include "shade.h"
+#include "place/layer.h"
+#include "place/rasterize.h"
+#include "shade/shade.h"
 #include "vector-inl.h"
 
 #include <array>

@@ -1,6 +1,6 @@
-#include "lights.h"
+#include "place/lights.h"
 
-#include "trigonometry.h"
+#include "scene/trigonometry.h"
 
 #include <algorithm>
 #include <numbers>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "layer.h"
+#include "place/layer.h"
 
 #include <array>
 

@@ -1,12 +1,12 @@
 #pragma once
 
-#include "layer.h"
-#include "lens.h"
-#include "light_table.h"
-#include "prepared_scene.h"
-#include "rasterize.h"
-#include "runs.h"
-#include "shadow_map.h"
+#include "place/layer.h"
+#include "place/lens.h"
+#include "place/rasterize.h"
+#include "place/shadow_map.h"
+#include "scene/prepared_scene.h"
+#include "shade/light_table.h"
+#include "shade/runs.h"
 
 #include <array>
 #include <cstdint>

@@ -1,4 +1,4 @@
-#include "light_table.h"
+#include "shade/light_table.h"
 
 namespace tether::raster {
 namespace {

@@ -1,4 +1,4 @@
-#include "facet.h"
+#include "place/facet.h"
 
 #include <algorithm>
 #include <cmath>

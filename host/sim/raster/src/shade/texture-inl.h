@@ -5,7 +5,7 @@
 #define TETHER_RASTER_TEXTURE_INL_H_
 #endif
 
-#include "surface-inl.h"
+#include "shade/surface-inl.h"
 #include "vector-inl.h"
 
 #include <array>

@@ -1,6 +1,6 @@
-#include "shadow_map.h"
+#include "place/shadow_map.h"
 
-#include "trigonometry.h"
+#include "scene/trigonometry.h"
 
 #include <algorithm>
 #include <cmath>

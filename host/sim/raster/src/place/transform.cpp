@@ -1,7 +1,7 @@
-#include "transform.h"
+#include "place/transform.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "transform.cpp"
+#define HWY_TARGET_INCLUDE "place/transform.cpp"
 #include <hwy/foreach_target.h>
 //
 #include "vector-inl.h"

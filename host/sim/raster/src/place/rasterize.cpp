@@ -1,11 +1,11 @@
-#include "rasterize.h"
+#include "place/rasterize.h"
 
 #include <algorithm>
 #include <bit>
 #include <limits>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "rasterize.cpp"
+#define HWY_TARGET_INCLUDE "place/rasterize.cpp"
 #include <hwy/foreach_target.h>
 //
 #include "vector-inl.h"

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "layer.h"
-#include "shadow_map.h"
+#include "place/layer.h"
+#include "place/shadow_map.h"
 
 #include <vector>
 

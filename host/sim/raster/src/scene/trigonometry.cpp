@@ -1,4 +1,4 @@
-#include "trigonometry.h"
+#include "scene/trigonometry.h"
 
 namespace tether::raster {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "layer.h"
-#include "lens.h"
+#include "place/layer.h"
+#include "place/lens.h"
 
 #include <array>
 #include <cstdint>

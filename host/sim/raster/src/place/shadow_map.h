@@ -1,9 +1,9 @@
 #pragma once
 
-#include "layer.h"
-#include "lens.h"
-#include "prepared_scene.h"
-#include "rasterize.h"
+#include "place/layer.h"
+#include "place/lens.h"
+#include "place/rasterize.h"
+#include "scene/prepared_scene.h"
 
 #include <algorithm>
 #include <array>

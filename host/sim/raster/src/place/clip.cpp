@@ -1,4 +1,4 @@
-#include "clip.h"
+#include "place/clip.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
-#include "clip.h"
-#include "facet.h"
-#include "layer.h"
-#include "transform.h"
+#include "place/clip.h"
+#include "place/facet.h"
+#include "place/layer.h"
+#include "place/transform.h"
 
 #include <algorithm>
 #include <bit>
