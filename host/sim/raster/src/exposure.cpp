@@ -192,10 +192,11 @@ Sampling::Sampling(const View& view, const Lens& lens, std::span<const double> b
 }
 
 double Sampling::exposed_px(const Tile& tile) const {
-  float most = 0.0F;
   if (exposed_px_.empty()) return 0.0;
+  float most = 0.0F;
   for (int row = tile.y / kTile_px; row <= (tile.y + tile.height - 1) / kTile_px; ++row) {
-    most = std::max(most, exposed_px_[static_cast<std::size_t>(row * across_ + tile.x / kTile_px)]);
+    const int place = row * across_ + tile.x / kTile_px;
+    most = std::max(most, exposed_px_[static_cast<std::size_t>(place)]);
   }
   return static_cast<double>(most);
 }

@@ -255,8 +255,8 @@ TEST(Exposure, ExpectsNoLessMotionThanThereIs) {
     for (std::uint64_t i = 10; i < 200; ++i) {
       const int column = static_cast<int>(drawn(seed, i, 0, view.camera.width_px));
       const int row = static_cast<int>(drawn(seed, 1000 + i, 0, view.camera.height_px));
-      const float z =
-          drawing.depth_m[static_cast<std::size_t>(row * view.camera.width_px + column)];
+      const int pixel = row * view.camera.width_px + column;
+      const float z = drawing.depth_m[static_cast<std::size_t>(pixel)];
       if (!std::isfinite(z)) continue;
       const Vec3 p = static_cast<double>(z) * view.camera.unproject({1.0 * column, 1.0 * row});
       const auto now = straight.project(p);

@@ -68,8 +68,10 @@ void set_normal(const PlacedVisual& visual, const VertexLook& a, const VertexLoo
 // 1/z.
 DepthPlane depth_of(const std::array<std::array<float, 3>, 3>& corners,
                     const Projection& projection, const FixedRect& seen) {
-  const double x_ref = static_cast<double>((seen.x_low + seen.x_high) / 2) / kSubpixels;
-  const double y_ref = static_cast<double>((seen.y_low + seen.y_high) / 2) / kSubpixels;
+  const std::int32_t x = (seen.x_low + seen.x_high) / 2;
+  const std::int32_t y = (seen.y_low + seen.y_high) / 2;
+  const double x_ref = static_cast<double>(x) / kSubpixels;
+  const double y_ref = static_cast<double>(y) / kSubpixels;
   const Vec3 a = vector(corners[0]);
   const Vec3 b = vector(corners[1]);
   const Vec3 c = vector(corners[2]);

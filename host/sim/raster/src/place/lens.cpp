@@ -73,7 +73,7 @@ void Lens::fill_cells() {
   const auto pixels =
       static_cast<std::size_t>(camera_.width_px) * static_cast<std::size_t>(camera_.height_px);
   const auto wide = [](std::int32_t low, std::int32_t high, int size) {
-    return static_cast<std::size_t>((high - low) / size + 1);
+    return static_cast<std::size_t>((high - low) / size) + 1;
   };
   int size = kCell_px * kSubpixels;
   while (wide(all_.x_low, all_.x_high, size) * wide(all_.y_low, all_.y_high, size) > pixels) {

@@ -32,7 +32,7 @@ HWY_INLINE void for_each_run_of(std::uint32_t bits, std::uint32_t ends, std::siz
     const int begin = std::countr_zero(bits);
     const int end = std::countr_zero((ends | ~(bits >> 1U)) & (~0U << begin)) + 1;
     use(row_begin + static_cast<std::size_t>(begin), row_begin + static_cast<std::size_t>(end));
-    bits &= end == 32 ? 0 : ~0U << end;
+    bits &= static_cast<std::uint32_t>(~std::uint64_t{0} << end);
   }
 }
 
@@ -119,8 +119,8 @@ class Batch {
 };
 
 // Out of line, for the registers' sake.
-HWY_NOINLINE Colour light_fully(const LayerTile& on, const Surface& s,
-                                const MaterialRow& material) {
+HWY_NOINLINE inline Colour light_fully(const LayerTile& on, const Surface& s,
+                                       const MaterialRow& material) {
   return light_up(on.shading, on.layer, s, material);
 }
 
