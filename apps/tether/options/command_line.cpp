@@ -2,6 +2,7 @@
 
 #include "commands/commands.h"
 #include "options/complaint.h"
+#include "shared/within.h"
 #include "terminal/say.h"
 
 #include <algorithm>
@@ -39,18 +40,6 @@ Examples:
 
 `tether list` prints the shipped files. Guides: docs/guide of the source, or
 /usr/share/doc/tether/guide.)";
-
-/// Like CLI::Range, but rejects NaN, and shows the limits as they are written.
-CLI::Validator within(double least, double most) {
-  const std::string range = fmt::format("{} to {}", least, most);
-  return CLI::Validator(
-      [=](const std::string& text) -> std::string {
-        double value = 0.0;
-        if (CLI::detail::lexical_cast(text, value) && value >= least && value <= most) return {};
-        return fmt::format("must be a number from {}, but is '{}'", range, text);
-      },
-      range);
-}
 
 /// Adds a subcommand; if it is chosen, `action` calls `run` with the options that were parsed.
 template <class Options>
