@@ -1,5 +1,6 @@
 #include "command_line.h"
 
+#include "shared/complaint.h"
 #include "shared/within.h"
 
 #include <algorithm>
@@ -334,18 +335,18 @@ CLI::App* add_subcommand(CLI::App& app, std::string_view name, std::string_view 
   return command;
 }
 
-/// CLI11's text for --help and --version; one line for an error.
-Refusal refusal(const CLI::App& app, const CLI::ParseError& error) {
-  if (error.get_exit_code() == 0) {
-    std::ostringstream out;
-    app.exit(error, out, out);
-    return {0, out.str()};
-  }
-  return {2, "tether-sut: " + std::string(error.what()) + " (see tether-sut --help)\n"};
-}
-
 Refusal refusal(const std::string& what) {
   return {2, "tether-sut: " + what + "\n"};
+}
+
+/// CLI11's text for --help and --version; one line for an error.
+Refusal refusal(const CLI::App& program, const CLI::ParseError& error) {
+  if (error.get_exit_code() == 0) {
+    std::ostringstream out;
+    program.exit(error, out, out);
+    return {0, out.str()};
+  }
+  return refusal(app::complaint(program, error));
 }
 
 void define_tasks(CLI::App& app, Words& words) {

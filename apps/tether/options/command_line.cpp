@@ -1,7 +1,7 @@
 #include "options/command_line.h"
 
 #include "commands/commands.h"
-#include "options/complaint.h"
+#include "shared/complaint.h"
 #include "shared/within.h"
 #include "terminal/say.h"
 
@@ -20,7 +20,7 @@
 #include <tether/base/error.h>
 #include <tether/base/version.h>
 
-// The options of all commands, with their help texts. Only this source and complaint.cpp include
+// The options of all commands, with their help texts. Of this program, only this source includes
 // CLI11, which is expensive to compile. docs/man/tether.1 describes the same options.
 namespace tether::app {
 
