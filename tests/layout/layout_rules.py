@@ -153,7 +153,8 @@ def check_public_headers(sources):
 
 
 def check_private_headers(sources):
-    """A quoted include names a file beside it, or of its library's src/; benchmarks and tests/ may quote any."""
+    """A quoted include names a file beside it, or of its library's src/; programs also quote "shared/…", of apps/, and
+    benchmarks and tests/ any."""
     paths = {s.path for s in sources}
 
     def rule(source, path, quoted):
@@ -162,6 +163,8 @@ def check_private_headers(sources):
         if ".." in path:
             return f'"{path}" leaves its folder'
         folders = list(pathlib.PurePath(source.path).parents)[:-2]
+        if source.parts[0] == "apps" and path.startswith("shared/"):
+            folders.append(pathlib.PurePath("apps"))
         if any((folder / sub / path).as_posix() in paths for folder in folders for sub in ("", "src")):
             return None
         return f'"{path}" is no file of this folder'

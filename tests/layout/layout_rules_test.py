@@ -77,7 +77,11 @@ class Planted(unittest.TestCase):
                     ("common/link/src/a.cpp", "#include <fmt/format.h>\n", None))
         header = Source("common/link/src/frame.h", "#pragma once\n")
         quote = '#include "frame.h"\n'
-        self.expect(lambda sources: check_private_headers([header, *sources]),
+        shared = Source("apps/shared/words.h", "#pragma once\n")
+        self.expect(lambda sources: check_private_headers([header, shared, *sources]),
+                    ("apps/tether/a.cpp", '#include "shared/words.h"\n', None),
+                    ("apps/tether/a.cpp", '#include "shared/others.h"\n', "is no file of this folder"),
+                    ("host/sync/src/a.cpp", '#include "shared/words.h"\n', "is no file of this folder"),
                     ("common/link/src/a.cpp", quote + '#include "link_generated.h"\n', None),
                     ("common/link/test/a_test.cpp", quote, None), ("bench/a.cpp", quote, None),
                     ("target/client/src/a.cpp", quote, "is no file of this folder"),

@@ -1,7 +1,9 @@
 #include "command_line.h"
 
+#include "shared/complaint.h"
+#include "shared/within.h"
+
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <sstream>
 #include <utility>
@@ -16,13 +18,16 @@
 #include <tether/rig/mission_file.h>
 #include <tether/rig/task_fields.h>
 
-// The options of all commands; the only source that includes CLI11. The options of tasks are made
-// from rig::task_fields, the others are defined here. After CLI11 has parsed the arguments,
-// understand() checks which options can be combined. docs/man/tether-sut.1 describes the same
-// options.
+// The options of all commands; of this program, only this source includes CLI11. The options of
+// tasks are made from rig::task_fields, the others are defined here. After CLI11 has parsed the
+// arguments, understand() checks which options can be combined. docs/man/tether-sut.1 describes
+// the same options.
 
 namespace tether::sut {
 namespace {
+
+using app::shown;
+using app::within;
 
 constexpr const char* kDescription =
     "Runs the tasks of the paper on the target: in simulation, connected to Tether's coordinator, "
@@ -77,26 +82,6 @@ std::string footer_of(std::string_view command) {
 }
 
 // Kinds of values ---------------------------------------------------------------------------------
-
-/// A number for people: 25, not 25.000000000000004.
-std::string shown(double value) {
-  std::ostringstream text;
-  text.precision(15);
-  text << std::round(value * 1e9) / 1e9;
-  return text.str();
-}
-
-/// Like CLI::Range, but rejects NaN, and shows the limits as they are written.
-CLI::Validator within(double least, double most) {
-  const std::string range = shown(least) + " to " + shown(most);
-  return CLI::Validator(
-      [=](const std::string& text) -> std::string {
-        double value = 0.0;
-        if (CLI::detail::lexical_cast(text, value) && value >= least && value <= most) return {};
-        return "must be a number from " + range + ", but is '" + text + "'";
-      },
-      range);
-}
 
 CLI::Validator odd() {
   return CLI::Validator(
@@ -350,18 +335,18 @@ CLI::App* add_subcommand(CLI::App& app, std::string_view name, std::string_view 
   return command;
 }
 
-/// CLI11's text for --help and --version; one line for an error.
-Refusal refusal(const CLI::App& app, const CLI::ParseError& error) {
-  if (error.get_exit_code() == 0) {
-    std::ostringstream out;
-    app.exit(error, out, out);
-    return {0, out.str()};
-  }
-  return {2, "tether-sut: " + std::string(error.what()) + " (see tether-sut --help)\n"};
-}
-
 Refusal refusal(const std::string& what) {
   return {2, "tether-sut: " + what + "\n"};
+}
+
+/// CLI11's text for --help and --version; one line for an error.
+Refusal refusal(const CLI::App& program, const CLI::ParseError& error) {
+  if (error.get_exit_code() == 0) {
+    std::ostringstream out;
+    program.exit(error, out, out);
+    return {0, out.str()};
+  }
+  return refusal(app::complaint(program, error));
 }
 
 void define_tasks(CLI::App& app, Words& words) {

@@ -264,6 +264,17 @@ TEST(CommandLine, RejectsMissingUnknownAndInvalidArguments) {
     EXPECT_THAT(refused(arguments), HasSubstr("--help")) << arguments;
 }
 
+TEST(CommandLine, SuggestsTheNearestCommandOrOption) {
+  EXPECT_EQ(refused("face_anchr --anchor b"),
+            "tether-sut: unknown command 'face_anchr'; did you mean 'face_anchor'? For help, type: "
+            "tether-sut --help\n");
+  EXPECT_EQ(refused("face_anchor --anchr=b"),
+            "tether-sut: unknown option '--anchr'; did you mean '--anchor'? For help, type: "
+            "tether-sut face_anchor --help\n");
+  EXPECT_EQ(refused("calibrate --zzz"),
+            "tether-sut: unexpected option '--zzz'. For help, type: tether-sut calibrate --help\n");
+}
+
 TEST(CommandLine, PrintsHelpAndVersion) {
   for (const char* arguments : {"--help", "face_anchor --help"}) {
     const auto help = std::get<Refusal>(parse(arguments));

@@ -9,15 +9,12 @@
 #include "terminal/say.h"
 #include "terminal/status_line.h"
 
-#include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <tether/base/error.h>
 #include <tether/campaign/campaign_plan.h>
@@ -26,7 +23,7 @@
 #include <tether/os/text_file.h>
 #include <tether/report/junit.h>
 #include <tether/report/page.h>
-#include <tether/report/verdict.h>
+#include <tether/report/run_text.h>
 #include <tether/runner/trial.h>
 #include <tether/runner/trial_folder.h>
 #include <tether/scenario/scenario.h>
@@ -131,116 +128,6 @@ runner::TrialSpec make_spec(const RunOptions& options) {
   return spec;
 }
 
-/// The lines below the outcome: a label and a text.
-using Rows = std::vector<std::pair<std::string, std::string>>;
-
-void print(const Rows& rows) {
-  std::size_t width = 0;
-  for (const auto& [label, text] : rows) width = std::max(width, label.size());
-  for (const auto& [label, text] : rows) fmt::print("  {:<{}}  {}\n", label, width, text);
-}
-
-std::string text_of(const campaign::MetricValue& metric, const std::string& reason) {
-  const std::string unit = metric.unit == "1" ? "" : " " + metric.unit;
-  const std::string value = metric.value ? fmt::format("{:.4g}{}", *metric.value, unit)
-                            : metric.missing_because == reason ? "none"
-                                                               : "none: " + metric.missing_because;
-  return value + (metric.max   ? fmt::format("  (limit {:.4g})", *metric.max)
-                  : metric.min ? fmt::format("  (at least {:.4g})", *metric.min)
-                               : "");
-}
-
-std::string text_of(const campaign::UavContacts& own) {
-  std::string text = own.count ? fmt::format("{} contact{}", *own.count, *own.count == 1 ? "" : "s")
-                               : "contacts not reported";
-  if (const auto& hardest = own.hardest)
-    text += fmt::format(", the hardest with '{}' at ST {:.6g} s and {:.3g} m/s", hardest->with,
-                        to_seconds(hardest->at), hardest->speed_m_s);
-  if (const auto& nearest = own.nearest)
-    text += fmt::format("; least clearance {:.3g} m, to '{}' at ST {:.6g} s", nearest->min_m,
-                        nearest->to, to_seconds(nearest->at));
-  return text;
-}
-
-std::string energy_text(const campaign::UavEnergy& energy) {
-  std::string causes;
-  for (std::size_t i = 0; i < energy::kCauses; ++i)
-    causes += fmt::format("{}{} {:.4g} J", i == 0 ? "" : ", ",
-                          energy::name(static_cast<energy::Cause>(i)), energy.spent_J[i]);
-  return fmt::format("{:.5g} J: {}", campaign::total_J(energy.spent_J), causes);
-}
-
-std::string charge_text(const campaign::UavEnergy& energy) {
-  const auto more = energy.more_flights();
-  return fmt::format("{:.1f} % left of {:.1f} %{}; at least {:.4g} V", 100.0 * energy.charge_to,
-                     100.0 * energy.charge_from,
-                     more ? fmt::format(", enough for {:.1f} more such flights", *more) : "",
-                     energy.least_voltage_V);
-}
-
-std::string text_of(const judge::ClauseVerdict& clause, bool is_evaluated) {
-  if (!is_evaluated) return "not evaluated";
-  const std::string margin =
-      clause.margin ? fmt::format(", margin {:.4g} {}", *clause.margin, clause.unit) : "";
-  return fmt::format("{}{}{}{}", clause.met ? "met" : "MISSED", margin,
-                     clause.decided_at
-                         ? fmt::format(", decided at ST {:.3f} s", to_seconds(*clause.decided_at))
-                         : "",
-                     clause.limited_by.empty() ? "" : "; " + clause.limited_by);
-}
-
-/// How the run was flown: simulator, clock, machine, sensors.
-void add_circumstances(Rows& rows, const campaign::TrialResult& result) {
-  rows.emplace_back("simulated",
-                    fmt::format("{:.3f} s in {:.3f} s of wall time, {} interactions",
-                                to_seconds(result.sync.st_at_end), to_seconds(result.this_run.wall),
-                                result.sync.interactions));
-  if (result.clock == scenario::name(scenario::Clock::kUnstamped))
-    rows.emplace_back("clock",
-                      "unstamped: the coordinator measured the SUT's time, which includes the "
-                      "link's");
-  if (!result.emulator.program.empty())
-    rows.emplace_back("clock", fmt::format("counted by {}, CPU model {}", result.emulator.program,
-                                           result.emulator.cpu_model));
-  if (result.replay) rows.emplace_back("time", campaign::describe_replay(result));
-  if (!result.target.empty()) rows.emplace_back("target", result.target);
-  if (const auto& stops = result.sync.stops)
-    rows.emplace_back("stops of all threads",
-                      fmt::format("{}, at most {:.3f} ms late", stops->count,
-                                  1e3 * to_seconds(stops->largest_overshoot)));
-  if (!result.profiles.empty())
-    rows.emplace_back("profiles", fmt::format("{}", fmt::join(result.profiles, ", ")));
-  if (const auto simulator = result.versions.find("simulator"); simulator != result.versions.end())
-    rows.emplace_back("simulator", simulator->second);
-  for (const Warning& warning : result.warnings)
-    if (warning.consequence == Consequence::kMissing) rows.emplace_back("missing", warning.subject);
-}
-
-void print_result(const runner::TrialSpec& spec, const campaign::TrialResult& result) {
-  fmt::print("{}",
-             report::verdict_text(report::verdicts_of(report::results_of_run(result), spec.folder),
-                                  report::Markup::kPlain));
-  const bool has_failed = result.outcome == campaign::Outcome::kFailed;  // its reason is an error
-  fmt::print("{} under \"{}\", seed {}: {}{}\n", result.scenario, result.condition, result.seed,
-             campaign::name(result.outcome), has_failed ? "" : ": " + result.reason);
-  Rows rows;
-  for (const auto& metric : result.metrics)
-    rows.emplace_back(metric.label, text_of(metric, result.reason));
-  for (const auto& clause : result.clauses)
-    rows.emplace_back(clause.name, text_of(clause, !has_failed));
-  for (const campaign::UavEnergy& energy : result.energy) {
-    rows.emplace_back("energy of " + energy.uav, energy_text(energy));
-    rows.emplace_back("charge of " + energy.uav, charge_text(energy));
-  }
-  for (const campaign::UavContacts& own : result.contacts) rows.emplace_back(own.uav, text_of(own));
-  add_circumstances(rows, result);
-  if (result.audit) rows.emplace_back("audit", result.audit->summary);
-  for (const std::string& note : result.this_run.notes) rows.emplace_back("note", note);
-  if (std::filesystem::exists(spec.folder / runner::kRecordFile))
-    rows.emplace_back("record", (spec.folder / runner::kRecordFile).string());
-  print(rows);
-}
-
 int run_and_print(const RunOptions& options, const std::stop_token& stop) {
   const runner::TrialSpec spec = make_spec(options);
   campaign::TrialResult result;
@@ -268,7 +155,7 @@ int run_and_print(const RunOptions& options, const std::stop_token& stop) {
   if (options.json)
     fmt::print("{}\n", campaign::to_json(result));
   else if (!options.quiet)
-    print_result(spec, result);
+    fmt::print("{}", report::run_text(result, spec.folder));
   if (result.outcome == campaign::Outcome::kFailed) say("tether: {}\n", result.reason);
   return campaign::exit_code(result.outcome);
 }

@@ -1,7 +1,8 @@
 #include "options/command_line.h"
 
 #include "commands/commands.h"
-#include "options/complaint.h"
+#include "shared/complaint.h"
+#include "shared/within.h"
 #include "terminal/say.h"
 
 #include <algorithm>
@@ -19,7 +20,7 @@
 #include <tether/base/error.h>
 #include <tether/base/version.h>
 
-// The options of all commands, with their help texts. Only this source and complaint.cpp include
+// The options of all commands, with their help texts. Of this program, only this source includes
 // CLI11, which is expensive to compile. docs/man/tether.1 describes the same options.
 namespace tether::app {
 
@@ -39,18 +40,6 @@ Examples:
 
 `tether list` prints the shipped files. Guides: docs/guide of the source, or
 /usr/share/doc/tether/guide.)";
-
-/// Like CLI::Range, but rejects NaN, and shows the limits as they are written.
-CLI::Validator within(double least, double most) {
-  const std::string range = fmt::format("{} to {}", least, most);
-  return CLI::Validator(
-      [=](const std::string& text) -> std::string {
-        double value = 0.0;
-        if (CLI::detail::lexical_cast(text, value) && value >= least && value <= most) return {};
-        return fmt::format("must be a number from {}, but is '{}'", range, text);
-      },
-      range);
-}
 
 /// Adds a subcommand; if it is chosen, `action` calls `run` with the options that were parsed.
 template <class Options>

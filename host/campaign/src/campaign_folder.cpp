@@ -86,11 +86,28 @@ void require_nothing_dropped(const fs::path& folder, const CampaignManifest& the
                   fmt::join(dropped, ", "), more > 0 ? fmt::format(" and {} more", more) : ""));
 }
 
+// Otherwise a mistyped name would fly everything again. What was killed early left its lock.
+fs::path with_something_to_resume(fs::path folder, OpenMode mode) {
+  if (mode != OpenMode::kResume) return folder;
+  std::error_code none;
+  const fs::file_status status = fs::status(folder, none);
+  if (status.type() == fs::file_type::not_found)
+    refuse_folder(folder,
+                  "does not exist, so --resume has nothing to continue. Give the right folder to "
+                  "--out, or omit --resume to begin.");
+  if (fs::is_directory(status) && fs::is_empty(folder, none))
+    refuse_folder(folder,
+                  "is empty, so --resume has nothing to continue. Give the right folder to --out, "
+                  "or omit --resume to begin.");
+  return folder;
+}
+
 }  // namespace
 
 CampaignFolder::CampaignFolder(fs::path folder, const scenario::Campaign& campaign,
                                const Settings& settings, OpenMode mode)
-    : folder_(std::move(folder)), claim_(folder_, FolderClaim::By::kCampaign) {
+    : folder_(with_something_to_resume(std::move(folder), mode)),
+      claim_(folder_, FolderClaim::By::kCampaign) {
   const CampaignManifest manifest = manifest_of(campaign, settings);
   if (holds_anything(folder_)) {
     check_existing(manifest, mode);

@@ -159,6 +159,20 @@ TEST_F(Folder, RefusesAFolderOfSomethingElse) {
   EXPECT_FALSE(std::filesystem::exists(out_ / kCampaignFile));
 }
 
+TEST_F(Folder, RefusesToResumeWhereNothingHasBegun) {
+  expect_refused(OpenMode::kResume, "does not exist");
+  EXPECT_FALSE(std::filesystem::exists(out_));
+  std::filesystem::create_directory(out_);
+  expect_refused(OpenMode::kResume, "is empty");
+  EXPECT_TRUE(std::filesystem::is_empty(out_));
+  open(OpenMode::kReplace);
+}
+
+TEST_F(Folder, ResumesACampaignThatWasKilledBeforeItHadPlanned) {
+  scratch_.write("out/" + std::string(kLockFile), "4711");
+  EXPECT_EQ(open(OpenMode::kResume).missing().size(), 9u);
+}
+
 TEST_F(Folder, RefusesAnotherCampaignAndACorruptManifest) {
   open(OpenMode::kFresh);
   campaign_.name = "other";

@@ -54,6 +54,15 @@ std::vector<int> cpus_of(const scenario::Condition& condition, std::size_t uav) 
   return cpus_for(os::allowed_cpus(), target ? target->cores : 0, first_cpu(condition, uav));
 }
 
+bool is_started_here(const scenario::Condition& own) {
+  return !own.by_hand && !(own.target && own.target->ssh);
+}
+
+/// Its counts are in this machine's memory, so that it runs here, whoever starts it.
+bool is_counted(const scenario::Condition& own) {
+  return own.target && own.target->emulator;
+}
+
 void require_cores(const scenario::Scenario& scenario, const scenario::Condition& condition) {
   const std::size_t allowed = os::allowed_cpus().size(), suts = scenario.uavs.size();
   if (first_cpu(condition, suts) <= allowed) return;
@@ -100,19 +109,20 @@ std::vector<int> cpus_for(const std::vector<int>& allowed, int cores, std::size_
 }
 
 std::vector<std::filesystem::path> sut_programs(const scenario::Scenario& scenario,
-                                                const scenario::Condition& condition) {
+                                                const scenario::Condition& condition,
+                                                bool by_user) {
   std::vector<std::filesystem::path> programs;
-  bool is_counted = false;
+  bool needs_plugin = false;
   std::vector<std::string> groups(scenario.uavs.size());
   for (const scenario::RealBoard& board : real_boards(condition, scenario.uavs.size()))
     for (const std::size_t uav : board.uavs) groups[uav] = board.name;
   for (std::size_t i = 0; i < scenario.uavs.size(); ++i) {
     const scenario::UavSetup& uav = scenario.uavs[i];
-    const auto target = for_uav(condition, i).target;
-    if ((target && target->ssh) || for_uav(condition, i).by_hand) continue;
-    is_counted = is_counted || (target && target->emulator);
+    const scenario::Condition own = for_uav(condition, i);
+    if (!is_counted(own) && (by_user || !is_started_here(own))) continue;
+    needs_plugin = needs_plugin || is_counted(own);
     try {
-      for (const auto& program : local_sut_command(uav.sut, target, groups[i]).programs)
+      for (const auto& program : local_sut_command(uav.sut, own.target, groups[i]).programs)
         if (std::find(programs.begin(), programs.end(), program) == programs.end())
           programs.push_back(program);
     } catch (const Error& e) {
@@ -121,14 +131,16 @@ std::vector<std::filesystem::path> sut_programs(const scenario::Scenario& scenar
           .about(uav.placement.name);
     }
   }
-  if (is_counted) programs.push_back(os::find_counter_plugin());
+  if (needs_plugin) programs.push_back(os::find_counter_plugin());
   return programs;
 }
 
-void require_sut_programs(const scenario::Scenario& scenario,
-                          const scenario::Condition& condition) {
-  sut_programs(scenario, condition);
-  require_cores(scenario, condition);
+void require_sut_programs(const scenario::Scenario& scenario, const scenario::Condition& condition,
+                          bool by_user) {
+  sut_programs(scenario, condition, by_user);
+  if (by_user) return;
+  for (std::size_t uav = 0; uav < scenario.uavs.size(); ++uav)
+    if (is_started_here(for_uav(condition, uav))) return require_cores(scenario, condition);
 }
 
 os::ChildCommand local_sut(const scenario::UavSetup& uav, const SutRun& run, std::size_t index,

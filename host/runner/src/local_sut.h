@@ -31,14 +31,18 @@ LocalSutCommand local_sut_command(const scenario::Sut& sut,
 std::vector<int> cpus_for(const std::vector<int>& allowed, int cores, std::size_t taken);
 
 /// All programs that start the SUTs of a condition here, each once; last the plugin that counts.
+/// Those of SUTs that the user starts are among them only if they are counted. `by_user`: the user
+/// starts all SUTs.
 /// @throws Error(kBadFile) at the scenario's file, about the UAV whose program does not exist;
 /// Error(kSetup) without the plugin.
 std::vector<std::filesystem::path> sut_programs(const scenario::Scenario& scenario,
-                                                const scenario::Condition& condition);
+                                                const scenario::Condition& condition,
+                                                bool by_user = false);
 
-/// Checks that the SUTs can run here. @throws Error(kBadFile) as sut_programs; at the target's
-/// file, about `cores`, if this machine has too few.
-void require_sut_programs(const scenario::Scenario& scenario, const scenario::Condition& condition);
+/// Checks that the SUTs can run here. `by_user` as above. @throws Error(kBadFile) as sut_programs;
+/// at the target's file, about `cores`, if this machine has too few.
+void require_sut_programs(const scenario::Scenario& scenario, const scenario::Condition& condition,
+                          bool by_user = false);
 
 /// How to start the SUT of `uav`, the run's SUT with that index. Its TETHER_OUT is `out`, and its
 /// output goes to `log`. @throws Error(kSetup) if `out` cannot be created.

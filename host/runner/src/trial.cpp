@@ -229,7 +229,7 @@ campaign::TrialResult run_trial(const TrialSpec& spec, const FindBackEnd& find_b
       scenario::resolve_sensors(spec.scenario, spec.condition, world, warnings.sink()),
       replayed_time(spec)};
   world.step = spec.scenario.step;
-  if (spec.has_sut_at(SutPlace::kThisMachine)) require_sut_programs(spec.scenario, spec.condition);
+  require_sut_programs(spec.scenario, spec.condition, spec.waits_for_sut);
   TrialFolder folder(spec.folder, spec.earlier);
 
   const std::string started_at = utc_now();

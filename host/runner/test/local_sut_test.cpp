@@ -152,6 +152,29 @@ TEST(LocalSut, ChecksTheProgramsAndCoresOfAScenario) {
   EXPECT_EQ(error.subject(), "uav2");
 }
 
+// Its counts are in this machine's memory; others may run anywhere.
+TEST(LocalSut, ChecksAProgramThatTheUserStartsOnlyIfItIsCounted) {
+  scenario::Scenario scenario;
+  scenario.file = "/s.toml";
+  scenario.uavs.resize(1);
+  scenario.uavs[0].placement.name = "uav1";
+  scenario.uavs[0].sut.command = {"no-such-program-of-tether"};
+  scenario::Condition by_hand;
+  by_hand.computers = {{.name = "c", .target = target({"sh"}, ""), .by_hand = true}};
+  by_hand.computers[0].target->cores = 1 << 20;
+  by_hand.seats = {{.computer = 0}};
+  EXPECT_NO_THROW(require_sut_programs(scenario, by_hand));
+  by_hand.computers[0].target->emulator.emplace().program = "sh";
+  EXPECT_EQ(bad_file_error([&] { require_sut_programs(scenario, by_hand); }).subject(), "uav1");
+
+  scenario::Condition waiting;
+  waiting.target = target({"sh"}, "");
+  EXPECT_NO_THROW(require_sut_programs(scenario, waiting, true));
+  waiting.target->emulator.emplace().program = "sh";
+  EXPECT_EQ(bad_file_error([&] { require_sut_programs(scenario, waiting, true); }).subject(),
+            "uav1");
+}
+
 TEST(LocalSut, NeedsThePluginForACountedTarget) {
   const ScratchFolder scratch;
   scenario::Scenario scenario;

@@ -60,11 +60,13 @@ constexpr std::array kMetricKinds = {
                .of_any_flight = true,
                .help = "how often the UAV hit something at more than threshold_m_s"},
     MetricKind{.name = "min_clearance_m",
-               .label = "Least clearance",
+               .label = "Least clearance, floor included",
                .unit = "m",
                .is_better_if_more = true,
                .of_any_flight = true,
-               .help = "least distance from the UAV's collision shapes to any other one"},
+               .help =
+                   "least distance from the UAV's collision shapes to any other one, in all of the "
+                   "flight, take-off and landing included"},
     MetricKind{.name = "energy_j",
                .label = "Energy",
                .unit = "J",

@@ -18,5 +18,10 @@ TEST(MetricKinds, HaveDistinctNamesAndLabelsAndAllTheirTexts) {
   EXPECT_EQ(unit_suffix("1") + unit_suffix("deg"), "_deg");
 }
 
+// Beside a clause that leaves the landing out, the label has to say why its value is 0.
+TEST(MetricKinds, SayThatTheClearanceIncludesTheFloor) {
+  EXPECT_EQ(find_metric_kind("min_clearance_m")->label, "Least clearance, floor included");
+}
+
 }  // namespace
 }  // namespace tether::scenario

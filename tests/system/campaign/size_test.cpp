@@ -97,6 +97,11 @@ TEST_F(Size, RefusesAWrongQuestionBeforeItWrites) {
   EXPECT_THAT(undecided.err, HasSubstr("hover.toml:"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
   write_hover_scenario(folder_.path(), "good", {kScripted, limit("3.5")});
+  const Output nothing = run(size({"--resume"}));
+  EXPECT_EQ(nothing.code, 2);
+  EXPECT_THAT(nothing.err,
+              AllOf(StartsWith("tether: " + (folder_ / "out").string() + ": does not exist"),
+                    HasSubstr("omit --resume")));
   for (const auto& [option, value] : {std::pair{"--success", "1"},
                                       {"--confidence", "0"},
                                       {"--interval", "1"},

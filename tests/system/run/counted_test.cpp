@@ -91,6 +91,21 @@ TEST_F(CountedRun, EndsWhenWorkIsNotCounted) {
   expect_end("native", "do not advance");
 }
 
+// The run does not wait for it.
+TEST_F(CountedRun, RefusesAProgramStartedByHandThatDoesNotExist) {
+  write_text(folder_ / "target.toml", std::string(kEmulator) + kCosts);
+  const auto scenario = write_hover_scenario(
+      folder_.path(), "good",
+      {{bad_sut_program().string(), "/nowhere/fly"},
+       {"name = \"uav1\"", "name = \"uav1\"\ntarget = \"laptop\""},
+       {"[sut]", "[[target]]\nname = \"laptop\"\nfile = \"target.toml\"\nby_hand = true\n\n[sut]"},
+       {"clock = \"cpu\"\n", ""}});
+  const Output output = run(tether({"run", scenario, "--out", out_}));
+  EXPECT_EQ(output.code, 2);
+  EXPECT_THAT(output.err, AllOf(HasSubstr("hover.toml"), HasSubstr("/nowhere/fly")));
+  EXPECT_FALSE(std::filesystem::exists(out_));
+}
+
 TEST_F(CountedRun, NamesThePackageThatIsMissing) {
   Command command = counted("good");
   command.environment.emplace_back("PATH", "/nowhere");

@@ -43,8 +43,8 @@ TEST(ProfileOfACampaign, IsInUseInEachTrialAndMustBeTheSameToResume) {
                "delay = { kind = \"constant\", ms = " +
                    delay_ms + " }\n");
   };
-  const auto fly = [&] {
-    return run(tether({"campaign", campaign, "--resume", "--out", folder / "out"}));
+  const auto fly = [&](const std::vector<std::string>& options = {}) {
+    return run(with(tether({"campaign", campaign, "--out", folder / "out"}), options));
   };
   write_profile("-1");
   const Output wrong = fly();
@@ -62,9 +62,9 @@ TEST(ProfileOfACampaign, IsInUseInEachTrialAndMustBeTheSameToResume) {
       EXPECT_EQ(sensor.delay_max, std::chrono::milliseconds(1));
     }
   }
-  EXPECT_EQ(fly().code, 0);
+  EXPECT_EQ(fly({"--resume"}).code, 0);
   write_profile("2");
-  const Output changed = fly();
+  const Output changed = fly({"--resume"});
   EXPECT_EQ(changed.code, 2);
   EXPECT_THAT(changed.err, HasSubstr("late.toml"));
 }

@@ -5,6 +5,7 @@
 
 #include <tether/base/error.h>
 #include <tether/report/pace.h>
+#include <tether/scenario/scenario.h>
 #include <tether/stats/sample_statistics.h>
 #include <tether/timing/timing.h>
 
@@ -12,6 +13,7 @@ namespace tether::report {
 namespace {
 
 constexpr double kNearlyEvery = 0.95;
+constexpr Duration kNoTime = std::chrono::microseconds(10);
 
 double quantile(std::vector<double> values, double share) {
   std::ranges::sort(values);
@@ -112,7 +114,34 @@ Pace pace_of(const record::Record& record, const record::SutInfo& sut) {
   return pace;
 }
 
+Speed speed_of(const record::Header& header) {
+  Speed speed{.boards = header.boards, .machine = header.machine, .emulator = header.emulator};
+  if (header.target) speed.target = header.target->name + " " + header.target->address;
+  for (const record::SutInfo& sut : header.suts)
+    speed.programs.push_back({.uav = sut.uav,
+                              .clock = sut.clock,
+                              .cpu_factor = sut.cpu_factor,
+                              .computing = sut.computing,
+                              .replay = sut.replay,
+                              .board = sut.board,
+                              .computer = sut.computer,
+                              .pinned_core = sut.pinned_core});
+  return speed;
+}
+
 }  // namespace
+
+bool Speed::is_scripted() const {
+  return !programs.empty() && std::ranges::all_of(programs, [](const Program& program) {
+    return program.clock == scenario::name(scenario::Clock::kScripted);
+  });
+}
+
+bool Speed::is_instant() const {
+  return is_scripted() && std::ranges::all_of(programs, [](const Program& program) {
+           return program.computing <= kNoTime;
+         });
+}
 
 std::optional<double> Pace::headroom() const {
   if (!offered_hz || !(p95_s > 0.0)) return std::nullopt;
@@ -133,6 +162,7 @@ std::optional<Pace> pace_of(const record::Record& record) {
   if (!slowest) return std::nullopt;
   Pace found = *slowest;
   found.boards = board_paces(record, paces);
+  found.speed = speed_of(record.header);
   return found;
 }
 

@@ -75,6 +75,20 @@ std::string missed_goals_text(const ConditionVerdict& condition) {
   return text + " (missed: " + missed_text(condition.missed, condition.flown == 1) + ")";
 }
 
+/// Why the computer is not the reason.
+std::string other_reason_text(const OtherReason& reason) {
+  switch (reason.evidence) {
+    case OtherReason::Evidence::kInstant:
+      return " Computing takes no time there, so a faster computer does not help.";
+    case OtherReason::Evidence::kInstantMissesToo:
+      return fmt::format(" “{}” misses it too, although computing takes no time there.",
+                         reason.condition);
+    case OtherReason::Evidence::kEquallyFastReaches:
+      break;
+  }
+  return fmt::format(" “{}” has the same computer and sensors, and reaches it.", reason.condition);
+}
+
 /// What limits the evidence.
 std::string doubts_text(const ConditionVerdict& condition) {
   std::string text;
@@ -113,6 +127,8 @@ std::string evidence_of(const ConditionVerdict& condition) {
                          flights(condition.failed), condition.reason);
     case Ruling::kNotFastEnough:
       return missed_goals_text(condition) + with_pace;
+    case Ruling::kOtherReason:
+      return missed_goals_text(condition) + with_pace + other_reason_text(*condition.other_reason);
     case Ruling::kUndecided:
       if (condition.flown == 0)
         return fmt::format("no flight on “{}” has a result.", condition.condition);
@@ -149,6 +165,9 @@ std::string lead_of(const ConditionVerdict& condition) {
       return "No answer";
     case Ruling::kNotFastEnough:
       return is_single ? "Not fast enough in this flight" : "Not fast enough";
+    case Ruling::kOtherReason:
+      return is_single ? "Goal missed in this flight for another reason than speed"
+                       : "Goal missed for another reason than speed";
     case Ruling::kFastEnoughSoFar:
       return is_single ? "Fast enough in this flight" : "Fast enough so far";
     case Ruling::kFreeRunning:
@@ -237,6 +256,11 @@ std::string sentence_of(const Advice& advice, const Verdict& verdict) {
       return stage_advice(advice, lead);
     case Kind::kTryFaster:
       return faster_advice(lead);
+    case Kind::kFindReason:
+      return lead.other_reason->evidence == OtherReason::Evidence::kEquallyFastReaches
+                 ? fmt::format("Look for the reason in what differs from “{}”, such as the radio.",
+                               advice.subject)
+                 : "Look for the reason in the program, the scenario and its limits.";
     case Kind::kFindThreshold:
       return threshold_advice(lead) + uavs_advice(lead);
     case Kind::kFlyMore:
@@ -297,6 +321,8 @@ std::string_view name(Ruling ruling) {
       return "set-up failed";
     case Ruling::kNotFastEnough:
       return "not fast enough";
+    case Ruling::kOtherReason:
+      return "goal missed for another reason";
     case Ruling::kUndecided:
       return "undecided";
     case Ruling::kFastEnoughSoFar:

@@ -13,10 +13,6 @@
 namespace tether::report {
 namespace {
 
-bool is_sufficient(Ruling ruling) {
-  return ruling == Ruling::kFastEnough || ruling == Ruling::kFastEnoughSoFar;
-}
-
 /// What was flown with one condition at one combination of the other values, by cpu_factor.
 using ByFactor = std::map<double, Ruling>;
 
@@ -58,6 +54,10 @@ std::string size_command(const ConditionVerdict& condition, bool searches_faster
 }
 
 }  // namespace
+
+bool is_sufficient(Ruling ruling) {
+  return ruling == Ruling::kFastEnough || ruling == Ruling::kFastEnoughSoFar;
+}
 
 std::string sufficient_condition(const Verdict& verdict) {
   const ConditionVerdict& lead = verdict.conditions[verdict.lead];

@@ -8,6 +8,9 @@
 /// What would be fast enough, as far as the campaign's own flights show it. Pure functions.
 namespace tether::report {
 
+/// Whether it is fast enough, at least so far.
+bool is_sufficient(Ruling ruling);
+
 /// Of a scenario whose lead is not fast enough: the slowest of the conditions that are. Begins with
 /// a space; empty: there is none.
 std::string sufficient_condition(const Verdict& verdict);

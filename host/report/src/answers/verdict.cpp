@@ -1,4 +1,5 @@
 #include "answers/board_pace.h"
+#include "answers/other_reasons.h"
 #include "tables/report_format.h"
 
 #include <algorithm>
@@ -142,6 +143,9 @@ std::vector<Advice> advice_on(const ConditionVerdict& lead) {
       if (!lead.pace || !lead.pace->keeps_up())
         advice.push_back({Kind::kFindThreshold, lead.condition});
       break;
+    case Ruling::kOtherReason:
+      advice.push_back({Kind::kFindReason, lead.other_reason->condition});
+      break;
     case Ruling::kUndecided:
     case Ruling::kFastEnoughSoFar:
       if (lead.flown > 0)
@@ -243,6 +247,7 @@ Verdict verdict_of(const campaign::ScenarioResults& scenario,
     const std::size_t i = verdict.conditions.size() - 1;
     if (i < paces.size()) verdict.conditions.back().pace = paces[i];
   }
+  find_other_reasons(verdict.conditions, scenario);
   // Of equal rulings, the condition whose program is the slowest.
   const auto lead =
       std::ranges::min_element(verdict.conditions, {}, [](const ConditionVerdict& condition) {

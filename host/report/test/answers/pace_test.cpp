@@ -47,6 +47,44 @@ TEST(Pace, IsThatOfTheImages) {
   EXPECT_EQ(pace.stages.front().stage, "detect");
 }
 
+TEST(Pace, HasTheSpeedOfAllPrograms) {
+  record::Record record = record_of_reads();
+  record.header.machine = "here";
+  record.header.boards = {{"obc", 2, false}};
+  record.header.target = record::TargetInfo{"pi", "ssh://pi", {}};
+  record.header.emulator.program = "qemu-arm";
+  record.header.suts.push_back(record.header.suts[0]);
+  record::SutInfo& other = record.header.suts[1];
+  other.uav = "uav2";
+  other.cpu_factor = 6.0;
+  other.board = other.computer = "obc";
+  other.pinned_core = 1;
+  const Speed speed = pace_of(record)->speed;
+  ASSERT_EQ(speed.programs.size(), 2u);
+  EXPECT_EQ(speed.programs[1], (Speed::Program{.uav = "uav2",
+                                               .clock = "cpu",
+                                               .cpu_factor = 6.0,
+                                               .board = "obc",
+                                               .computer = "obc",
+                                               .pinned_core = 1}));
+  EXPECT_EQ(speed.boards, record.header.boards);
+  EXPECT_EQ(speed.machine, "here");
+  EXPECT_EQ(speed.target, "pi ssh://pi");
+  EXPECT_EQ(speed.emulator.program, "qemu-arm");
+  EXPECT_FALSE(speed.is_scripted());
+}
+
+TEST(Speed, IsInstantIfNoProgramIsChargedTime) {
+  Speed speed{.programs = {{.clock = "scripted", .computing = std::chrono::microseconds(1)},
+                           {.clock = "scripted", .computing = std::chrono::microseconds(10)}}};
+  EXPECT_TRUE(speed.is_scripted() && speed.is_instant());
+  speed.programs[1].computing = std::chrono::microseconds(11);
+  EXPECT_TRUE(speed.is_scripted() && !speed.is_instant());
+  speed.programs[1] = {.clock = "cpu"};
+  EXPECT_FALSE(speed.is_scripted() || speed.is_instant());
+  EXPECT_FALSE(Speed{}.is_instant());
+}
+
 TEST(Pace, CountsComputingBetweenImagesAndEachImageOnce) {
   record::Record record = record_of_reads();
   record.interactions[5].message.kind = record::kCommand;

@@ -46,7 +46,7 @@ CampaignManifest read_manifest(const std::filesystem::path& folder);
 
 enum class OpenMode {
   kFresh,    ///< the folder must not contain results yet
-  kResume,   ///< continue with the results that exist
+  kResume,   ///< continue with the results that exist; the folder must not be missing or empty
   kReplace,  ///< remove the results of a campaign of that name, and everything beside them
 };
 
@@ -58,9 +58,9 @@ class CampaignFolder {
   /// interrupted. Removes the report of the folder if any are.
   /// @throws Error(kUsage), about the folder and without a change, if the folder contains something
   ///   else, results with other settings or versions (about the setting), a campaign with more
-  ///   seeds, conditions or scenarios (whose trials would be missing from every mean), or results
-  ///   although `mode` is kFresh; as FolderClaim if another process writes in it. Error(kSetup) if
-  ///   the file system refuses.
+  ///   seeds, conditions or scenarios (whose trials would be missing from every mean), results
+  ///   although `mode` is kFresh, or nothing although it is kResume; as FolderClaim if another
+  ///   process writes in it. Error(kSetup) if the file system refuses.
   /// @pre `campaign` outlives the object.
   CampaignFolder(std::filesystem::path folder, const scenario::Campaign& campaign,
                  const Settings& settings, OpenMode mode);

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include <tether/base/time.h>
 #include <tether/record/reader.h>
 #include <tether/timing/stage_table.h>
 
@@ -28,6 +29,31 @@ struct BoardPace {
   std::size_t slowest_in = 0;               ///< flights in which it was the slowest
   std::pair<double, double> p95_range_s{};  ///< least and largest of a flight
   std::pair<double, double> alone_range{};
+};
+
+/// What decides how fast the programs of a run compute: equal for runs on the same computers.
+struct Speed {
+  struct Program {
+    std::string uav{};
+    std::string clock{};
+    double cpu_factor = 1.0;
+    Duration computing{0};                       ///< of a scripted clock: of each phase
+    std::optional<record::ReplayInfo> replay{};  ///< of a replayed clock
+    std::string board{}, computer{};             ///< as in record::SutInfo
+    std::optional<int> pinned_core{};
+    friend bool operator==(const Program&, const Program&) = default;
+  };
+  std::vector<Program> programs{};  ///< in the record's order
+  std::vector<record::BoardInfo> boards{};
+  std::string machine{};  ///< empty: of a repeatable run, in which it does not matter
+  std::string target{};   ///< its name and address
+  record::EmulatorInfo emulator{};
+  friend bool operator==(const Speed&, const Speed&) = default;
+
+  /// Whether the scenario sets how long each program computes.
+  bool is_scripted() const;
+  /// … to next to nothing, as on an infinitely fast computer: at most 0.01 ms for each phase.
+  bool is_instant() const;
 };
 
 /// How fast the program of one run worked, and on what it spent its computing time.
@@ -54,6 +80,8 @@ struct Pace {
 
   /// Of a fleet with several computers; empty: of no such fleet, or not known.
   std::vector<BoardPace> boards{};
+
+  Speed speed{};  ///< of all programs of the run
 
   /// How many times slower the program could compute, and still 95 % of its images would take no
   /// longer than the camera's period. None without a camera with a rate.

@@ -26,6 +26,7 @@ enum class Ruling {
   kVoid,             ///< a record breaks the rules of time
   kSetUpFailed,      ///< no flight ran
   kNotFastEnough,    ///< fewer than the wanted share reach the goal; or the only flight missed it
+  kOtherReason,      ///< the same, but the computer's speed is not the reason: see OtherReason
   kUndecided,        ///< the flights show neither
   kFastEnoughSoFar,  ///< every flight reached the goal, but they are too few to be sure
   kFastEnough,       ///< at least the wanted share reach the goal
@@ -44,6 +45,17 @@ std::string missed_without_value(const campaign::TrialResult& trial);
 /// "time required ≤ 5 s (3 flights), the time limit (1 flight) and 2 more"; of one flight, without
 /// the counts.
 std::string missed_text(const MissedLimits& missed, bool of_one = false);
+
+/// What shows that a goal is not missed for want of speed.
+struct OtherReason {
+  enum class Evidence {
+    kInstant,            ///< computing takes no time under this condition
+    kInstantMissesToo,   ///< … under another one, which misses the goal, too
+    kEquallyFastReaches  ///< another one has the same computers and sensors, and reaches the goal
+  };
+  Evidence evidence = Evidence::kInstant;
+  std::string condition{};  ///< the other one
+};
 
 /// One condition of a scenario.
 struct ConditionVerdict {
@@ -66,6 +78,7 @@ struct ConditionVerdict {
   std::string reason{};  ///< of the first flight that failed, or is not sound
   std::optional<Pace> pace{};
   std::string unreadable{};  ///< why the pace is not known, of the first record; empty: it has none
+  std::optional<OtherReason> other_reason{};  ///< of kOtherReason
   /// As in campaign::ThisRun, of the first flight.
   std::vector<std::string> size_arguments{};
   bool is_on_real_board = false;  ///< as far as the first flight says
@@ -78,6 +91,7 @@ struct Advice {
     kCoolBoard,      ///< subject: the condition
     kSpeedUpStage,   ///< subject: the stage
     kTryFaster,      ///< it reads every image: is it the computer? subject: the condition
+    kFindReason,     ///< it is not the computer; subject: the condition to compare, or empty
     kFindThreshold,  ///< subject: the condition
     kFlyMore,        ///< subject: the condition; flights: how many in all, 0: very many
     kSetLimit,

@@ -1,9 +1,7 @@
-#include "options/complaint.h"
+#include "shared/complaint.h"
 
 #include <string_view>
 #include <vector>
-
-#include <fmt/format.h>
 
 #include <tether/base/suggest.h>
 
@@ -35,25 +33,24 @@ std::string what_is_wrong(const CLI::App& command, const CLI::ParseError& error)
   for (const std::string& word : rest) {
     const std::string given = word.substr(0, word.find('='));
     if (const std::string_view near = nearest(given, candidates); !near.empty())
-      return fmt::format("unknown {} '{}'; did you mean '{}'?",
-                         given.starts_with('-') ? "option" : "command", given, near);
+      return std::string("unknown ") + (given.starts_with('-') ? "option" : "command") + " '" +
+             given + "'; did you mean '" + std::string(near) + "'?";
   }
   if (rest.empty() && error.get_name() == "RequiredError" && !subcommands.empty())
     return "no command is given.";
-  if (rest.empty()) return fmt::format("{}.", error.what());
-  return fmt::format("unexpected {} '{}'.",
-                     rest.front().starts_with('-') ? "option"
-                     : subcommands.empty()         ? "argument"
-                                                   : "command",
-                     rest.front());
+  if (rest.empty()) return std::string(error.what()) + ".";
+  return std::string("unexpected ") +
+         (rest.front().starts_with('-') ? "option"
+          : subcommands.empty()         ? "argument"
+                                        : "command") +
+         " '" + rest.front() + "'.";
 }
 
 }  // namespace
 
 std::string complaint(const CLI::App& program, const CLI::ParseError& error) {
   const CLI::App& command = innermost(program);
-  return fmt::format("{} For help, type: {} --help", what_is_wrong(command, error),
-                     command_words(command));
+  return what_is_wrong(command, error) + " For help, type: " + command_words(command) + " --help";
 }
 
 }  // namespace tether::app
