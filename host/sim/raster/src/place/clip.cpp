@@ -30,21 +30,24 @@ Polygon::Point cut(const Polygon::Point& inner, const Polygon::Point& outer, con
   return {inner.p_C + share * (outer.p_C - inner.p_C), {0, 0}, false};
 }
 
-void clip(Polygon& polygon, const Plane& plane) {
+bool is_cut(const Polygon& polygon, const Plane& plane) {
   const auto* const begin = polygon.points.data();
-  const auto is_cut = [&](const Polygon::Point& point) { return plane.at(point.p_C) < 0.0; };
-  if (std::none_of(begin, begin + polygon.size, is_cut)) return;
-  Polygon kept;
+  return std::any_of(begin, begin + polygon.size,
+                     [&](const Polygon::Point& point) { return plane.at(point.p_C) < 0.0; });
+}
+
+// What is inside of a plane.
+void cut(const Polygon& polygon, const Plane& plane, Polygon& kept) {
+  kept.size = 0;
   for (std::size_t i = 0; i < polygon.size; ++i) {
     const Polygon::Point& here = polygon.points[i];
-    const Polygon::Point& next = polygon.points[(i + 1) % polygon.size];
+    const Polygon::Point& next = polygon.points[i + 1 == polygon.size ? 0 : i + 1];
     const bool is_inside = plane.at(here.p_C) >= 0.0;
     if (is_inside) kept.add(here);
     if (is_inside != (plane.at(next.p_C) >= 0.0)) {
       kept.add(is_inside ? cut(here, next, plane) : cut(next, here, plane));
     }
   }
-  polygon = kept;
 }
 
 std::int32_t fixed(double px) {
@@ -55,7 +58,15 @@ std::int32_t fixed(double px) {
 }  // namespace
 
 void clip(Polygon& polygon, const Projection& projection) {
-  for (const Plane& plane : planes(projection)) clip(polygon, plane);
+  Polygon other;
+  Polygon* whole = &polygon;
+  Polygon* kept = &other;
+  for (const Plane& plane : planes(projection)) {
+    if (!is_cut(*whole, plane)) continue;
+    cut(*whole, plane, *kept);
+    std::swap(whole, kept);
+  }
+  if (whole == &other) polygon = other;
   for (std::size_t i = 0; i < polygon.size; ++i) {
     Polygon::Point& point = polygon.points[i];
     if (point.is_placed) continue;

@@ -22,7 +22,7 @@ struct Polygon {
     bool is_placed;  ///< whether `fixed` is known
   };
   /// Of a triangle, five planes leave eight points at most; rounding may make one more of two.
-  std::array<Point, 16> points;
+  std::array<Point, 12> points;
   std::size_t size = 0;
 
   void add(const Point& point) {

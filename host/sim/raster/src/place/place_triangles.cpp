@@ -140,11 +140,11 @@ class Placer {
 
   void place(const PreparedInstance& instance) {
     const PreparedMesh& mesh = scene_.meshes[instance.mesh];
-    const Pose X_WV = instance.body < 0
-                          ? instance.X_BV
-                          : layer_.X_WB[static_cast<std::size_t>(instance.body)] * instance.X_BV;
-    const Pose X_CV = layer_.X_CW * X_WV;
-    if (mesh.clusters == 0 || !may_see(X_CV, mesh.bounds)) return;
+    const Pose X_CB = instance.body < 0
+                          ? layer_.X_CW
+                          : layer_.X_CW * layer_.X_WB[static_cast<std::size_t>(instance.body)];
+    if (mesh.clusters == 0 || !may_see(X_CB, instance.bounds_B)) return;
+    const Pose X_CV = X_CB * instance.X_BV;
     instance_ = &instance;
     transformation_ = make_transformation(X_CV, layer_.projection, seen_);
     layer_.visuals.push_back(
@@ -157,8 +157,8 @@ class Placer {
     }
   }
 
-  bool may_see(const Pose& X_CV, const Sphere& bounds) const {
-    return frustum_.may_see(transform(X_CV, bounds.centre), bounds.radius_m * kSlack);
+  bool may_see(const Pose& X_C, const Sphere& bounds) const {
+    return frustum_.may_see(transform(X_C, bounds.centre), bounds.radius_m * kSlack);
   }
 
   void place(const Cluster& cluster, std::uint32_t first_primitive) {

@@ -99,6 +99,7 @@ struct PreparedInstance {
   bool transparent;
   bool cast_shadows;
   uav::Pose X_BV;
+  Sphere bounds_B;
 };
 
 struct PreparedScene {

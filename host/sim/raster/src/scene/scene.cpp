@@ -203,10 +203,11 @@ class Preparation {
     out.transparent = transparent_materials_[in.material];
     out.cast_shadows = in.cast_shadows && !out.transparent;
     out.X_BV = in.X_BV;
+    out.bounds_B = {transform(in.X_BV, mesh.bounds.centre), mesh.bounds.radius_m};
     next_primitive_ += mesh.triangles;
     scene_.any_transparent = scene_.any_transparent || out.transparent;
     scene_.instances.push_back(out);
-    if (in.body) include(*in.body, norm(transform(in.X_BV, mesh.bounds.centre)), mesh);
+    if (in.body) include(*in.body, norm(out.bounds_B.centre), mesh);
   }
 
   void include(std::size_t body, double centre_m, const PreparedMesh& mesh) {
