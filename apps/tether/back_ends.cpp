@@ -91,7 +91,7 @@ runner::BackEnd back_end(const sim::protocol::Endpoint& endpoint) {
       [endpoint](sim::World world, const SimulatorSetup& setup) {
         return attach(endpoint, std::move(world), setup);
       },
-      sim::require_color_cameras);
+      sim::require_remote_cameras);
 }
 
 runner::BackEnd back_end(GazeboSimulator) {
@@ -99,7 +99,7 @@ runner::BackEnd back_end(GazeboSimulator) {
               [](const sim::World& world) {
                 sim::check_sdf_version(world, {.name = "Gazebo 11"});
                 sim::check_gazebo_world(world);
-                sim::require_color_cameras(world);
+                sim::require_remote_cameras(world);
               },
           .start =
               [](sim::World world, const SimulatorSetup& setup) {

@@ -22,10 +22,10 @@ void try_conditions(const scenario::CampaignScenario& entry, const sim::World& w
                     const FindBackEnd& find_back_end, const WarningSink& warn) {
   for (const std::string& name : entry.conditions) {
     const scenario::Condition& condition = *entry.scenario.find_condition(name);
-    find_back_end(condition.simulator).require_readable(world);
     sim::World copy = world;
     scenario::resolve_energy(entry.scenario, condition, copy, warn);
     scenario::resolve_sensors(entry.scenario, condition, copy, warn);
+    find_back_end(condition.simulator).require_readable(copy);
   }
 }
 

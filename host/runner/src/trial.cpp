@@ -224,10 +224,10 @@ campaign::TrialResult run_trial(const TrialSpec& spec, const FindBackEnd& find_b
   sim::World world = (spec.worlds ? *spec.worlds : none)
                          .load(scenario::world_request(spec.scenario, spec.seed), warnings.sink());
   scenario::resolve_energy(spec.scenario, spec.condition, world, warnings.sink());
-  back_end.require_readable(world);
   const TrialInputs inputs{
       scenario::resolve_sensors(spec.scenario, spec.condition, world, warnings.sink()),
       replayed_time(spec)};
+  back_end.require_readable(world);
   world.step = spec.scenario.step;
   require_sut_programs(spec.scenario, spec.condition, spec.waits_for_sut);
   TrialFolder folder(spec.folder, spec.earlier);

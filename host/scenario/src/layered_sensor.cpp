@@ -113,12 +113,17 @@ void LayeredSensor::lay_model(const SensorProfile& layer, sim::CameraModel& came
       *layer.pixel_noise != sim::Noise{}) {
     refuse(layer, {"noise"}, *sensor_, "labels have no noise");
   }
+  if (!uav::has_color(camera.kind) && layer.antialias.value_or(false)) {
+    refuse(layer, {"antialias"}, *sensor_, "it measures no colours");
+  }
   remake_lens(camera.intrinsics, layer);
   if (layer.distortion) distort(camera.intrinsics, *layer.distortion);
   replace(camera.pixel_noise, layer.pixel_noise);
   replace(camera.exposure_s, layer.exposure_s);
   replace(camera.readout_s, layer.readout_s);
   note(shutter_at_, layer, {"exposure_ms", "readout_ms", "timing"});
+  replace(camera.antialias, layer.antialias);
+  note(camera.antialias_at, layer, {"antialias"});
   replace(camera.depth_min_m, layer.min_m);
   replace(camera.depth_max_m, layer.max_m);
   note(limits_at_, layer, {"min_m", "max_m"});

@@ -16,7 +16,8 @@ class LayeredSensor {
 
   const sim::Sensor& sensor() const { return *sensor_; }
   /// @throws Error(kBadFile) at a key of `layer` that a sensor of this kind does not support: also
-  ///   limits of a camera without depths, and noise of a segmentation camera.
+  ///   limits of a camera without depths, antialiasing of one without colours, and noise of a
+  ///   segmentation camera.
   void lay(const SensorProfile& layer);
   /// After the last layer: sets the sensor's update rate and returns its timing.
   /// @throws Error(kBadFile), about the sensor, at the last layer that set one of two values that

@@ -66,6 +66,8 @@ TEST_F(Layered, EveryKeyOfACameraArrives) {
   EXPECT_THAT(values_of(model.pixel_noise), ElementsAre(0.01, 0.02, 0.03, 0.04, 0.05, 60.0));
   EXPECT_DOUBLE_EQ(model.exposure_s, 0.008);
   EXPECT_DOUBLE_EQ(model.readout_s, 0.0125);
+  EXPECT_TRUE(model.antialias);
+  EXPECT_EQ(model.antialias_at.line, 16);
 }
 
 TEST_F(Layered, EveryKeyOfAnImuArrivesOnAllAxes) {
@@ -122,6 +124,11 @@ TEST_F(Layered, RefusesWhatACameraOfThatTypeCannotHave) {
   expect_refusal(5, "max_m", [&] { lay_on(kSegmentation, "max_m = 1\n"); });
   expect_refusal(5, "noise", [&] { lay_on(kSegmentation, "noise = { stddev = 1 }\n"); });
   EXPECT_NO_THROW(lay_on(kSegmentation, "noise = {}\n"));
+  for (const auto kind : {kDepth, kSegmentation}) {
+    expect_refusal(5, "antialias", [&] { lay_on(kind, "antialias = true\n"); });
+    EXPECT_NO_THROW(lay_on(kind, "antialias = false\n"));
+  }
+  EXPECT_NO_THROW(lay_on(kRgbd, "antialias = true\n"));
   expect_refusal(5, "camera", [&] { lay_on(kDepth, "min_m = 20\n"); });
 }
 
@@ -149,6 +156,19 @@ TEST_F(Layered, ALayerChangesOnlyWhatItSets) {
   lay(camera_, {layer("camera", "rpy_deg = [0, 0, 90]\n")});
   EXPECT_EQ(camera_.X_BS.p, (uav::Vec3{0.1, 0.0, 0.0}));
   EXPECT_EQ(camera_.X_BS.q, uav::from_rpy(0.0, 0.0, rad_from_deg(90)));
+}
+
+TEST_F(Layered, TheLastLayerThatSetsItDecidesWhetherACameraIsAntialiased) {
+  const auto& model = std::get<sim::CameraModel>(camera_.model);
+  lay(camera_, {layer("camera", "exposure_ms = 1\n")});
+  EXPECT_FALSE(model.antialias);
+  EXPECT_EQ(model.antialias_at.line, 0);
+  lay(camera_, {layer("camera", "antialias = true\n"), layer("camera", "readout_ms = 1\n")});
+  EXPECT_TRUE(model.antialias);
+  EXPECT_EQ(model.antialias_at.line, 4);
+  lay(camera_, {layer("camera", "readout_ms = 1\nantialias = false\n")});
+  EXPECT_FALSE(model.antialias);
+  EXPECT_EQ(model.antialias_at.line, 5);
 }
 
 // Timing.

@@ -88,5 +88,16 @@ TEST_F(CampaignInGazebo, DoesNotBeginWithoutGazeboOrWithJobsThatWouldShareIt) {
                  {{"TETHER_GAZEBO_ROOT", folder_ / "nothing"}});
 }
 
+// The key is in a profile that only the campaign names.
+TEST_F(CampaignInGazebo, DoesNotBeginWithAnAntialiasedCamera) {
+  write_campaign(folder_.path(), 1, "profile = \"smooth.toml\"\n");
+  const auto profile = folder_ / "smooth.toml";
+  write_text(profile, "name = \"smooth\"\n[sensors.camera]\nkind = \"camera\"\nantialias = true\n");
+  const Output output = fly({"--simulator", "gazebo"});
+  EXPECT_EQ(output.code, 2);
+  EXPECT_THAT(output.err, HasSubstr(profile.string() + ":4: "));
+  EXPECT_FALSE(std::filesystem::exists(out_));
+}
+
 }  // namespace
 }  // namespace tether::system_test

@@ -42,6 +42,7 @@ constexpr std::array kKeys = {
     KeyRule{"noise", SensorKind::kCamera},
     KeyRule{"exposure_ms", SensorKind::kCamera},
     KeyRule{"readout_ms", SensorKind::kCamera},
+    KeyRule{"antialias", SensorKind::kCamera},
     KeyRule{"angular_velocity_noise_rad_s", SensorKind::kImu},
     KeyRule{"linear_acceleration_noise_m_s2", SensorKind::kImu},
     KeyRule{"min_m", SensorKind::kRange, SensorKind::kCamera},
@@ -187,6 +188,7 @@ void read_camera(const toml::Table& camera, SensorProfile& profile) {
   profile.pixel_noise = read_noise(camera, "noise");
   profile.exposure_s = scaled(camera.number_if("exposure_ms", kTime_ms), 1e-3);
   profile.readout_s = scaled(camera.number_if("readout_ms", kTime_ms), 1e-3);
+  if (camera.has("antialias")) profile.antialias = camera.boolean("antialias");
 }
 
 void read_imu(const toml::Table& imu, SensorProfile& profile) {

@@ -198,6 +198,25 @@ TEST(CamerasTest, ExposureBlursByRateTimesFocalLength) {
   }
 }
 
+// How many grey levels of a picture are neither of the background nor of the wall.
+std::size_t mixed_bytes(const uav::CameraSample& image) {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(image.rgb, [](std::uint8_t byte) { return byte != 0 && byte != 255; }));
+}
+
+// Nothing moves, so that only the coverage of pixels gives values between black and white.
+TEST(CamerasTest, AntialiasingMixesTheColoursAtAnEdge) {
+  World world = edge_world();
+  const uav::CameraSample plain = Flight(world).image();
+  EXPECT_EQ(mixed_bytes(plain), 0U);
+  EXPECT_GT(std::ranges::count(plain.rgb, 0), 0);
+  EXPECT_GT(std::ranges::count(plain.rgb, 255), 0);
+  camera_of(world).antialias = true;
+  const uav::CameraSample smooth = Flight(world).image();
+  EXPECT_GT(mixed_bytes(smooth), std::size_t{3} * kHeight / 2) << "one pixel in most rows";
+  EXPECT_LT(mixed_bytes(smooth), std::size_t{3} * kHeight * 3) << "only at the edge";
+}
+
 TEST(CamerasTest, RollingShutterLeansAnUprightEdge) {
   expect_edges_of_the_shutter(with_shutter(edge_world(), 0.0, 0.03));
 }

@@ -147,5 +147,18 @@ TEST(SeenAnchors, AreWhatIsNotHidden) {
   }
 }
 
+// A metric compares the edges of what is seen with the geometry, to less than a pixel.
+TEST(SeenAnchors, AndDepthsAreTheSameInAnAntialiasedImage) {
+  World world = walled_world(CameraKind::kRgbd);
+  world.uavs[0].sensors[kCamera].X_BS.q = uav::from_rpy(0.1, 0.1, 0.2);
+  const uav::CameraSample plain = image_of(world);
+  eye_of(world).antialias = true;
+  const uav::CameraSample smooth = image_of(world);
+  EXPECT_NE(smooth.rgb, plain.rgb);
+  EXPECT_EQ(smooth.depth_m, plain.depth_m);
+  EXPECT_EQ(smooth.seen_anchors, plain.seen_anchors);
+  EXPECT_FALSE(plain.seen_anchors.empty());
+}
+
 }  // namespace
 }  // namespace tether::sim

@@ -41,19 +41,31 @@ std::vector<VisualMaterial> materials_of(const World& world) {
   return materials;
 }
 
+void require_remote_camera(const Uav& uav, const Sensor& sensor, const CameraModel& camera) {
+  if (camera.kind != uav::CameraKind::kColor) {
+    throw Error(ErrorCode::kBadFile, sensor.declared_at,
+                "sensor '" + sensor.name + "' of UAV '" + uav.name + "' is a " +
+                    std::string(uav::name(camera.kind)) +
+                    ", which external simulators do not have; use the embedded simulator, or a "
+                    "UAV model without this sensor")
+        .about(sensor.name);
+  }
+  if (camera.antialias) {
+    throw Error(ErrorCode::kBadFile, camera.antialias_at,
+                "the camera '" + sensor.name + "' of UAV '" + uav.name +
+                    "' has antialias = true, which external simulators do not support; use the "
+                    "embedded simulator, or antialias = false")
+        .about("antialias");
+  }
+}
+
 }  // namespace
 
-void require_color_cameras(const World& world) {
+void require_remote_cameras(const World& world) {
   for (const Uav& uav : world.uavs) {
     for (const Sensor& sensor : uav.sensors) {
       const auto* camera = std::get_if<CameraModel>(&sensor.model);
-      if (camera == nullptr || camera->kind == uav::CameraKind::kColor) continue;
-      throw Error(ErrorCode::kBadFile, sensor.declared_at,
-                  "sensor '" + sensor.name + "' of UAV '" + uav.name + "' is a " +
-                      std::string(uav::name(camera->kind)) +
-                      ", which external simulators do not have; use the embedded simulator, or a "
-                      "UAV model without this sensor")
-          .about(sensor.name);
+      if (camera != nullptr) require_remote_camera(uav, sensor, *camera);
     }
   }
 }
@@ -64,7 +76,7 @@ protocol::Open make_open(const World& world, const WarningSink& warn) {
                 "world '" + world.name + "' has no file; external simulators read the world's file")
         .about(world.name);
   }
-  require_color_cameras(world);
+  require_remote_cameras(world);
   const ViewSize size = largest_view(world);
   protocol::Open open;
   open.world_name = world.name;

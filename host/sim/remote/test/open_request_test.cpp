@@ -112,6 +112,17 @@ TEST(OpenRequest, RefusesCamerasThatTheProtocolDoesNotHave) {
   }
 }
 
+TEST(OpenRequest, RefusesAnAntialiasedCameraAtTheKey) {
+  World world = world_of_a_file();
+  CameraModel& camera = std::get<CameraModel>(world.uavs[1].sensors.at(0).model);
+  camera.antialias_at = {"profile.toml", 4};
+  EXPECT_NO_THROW(open_of(world));
+  camera.antialias = true;
+  const Error error = bad_file_error([&] { open_of(world); });
+  EXPECT_EQ(error.subject(), "antialias");
+  EXPECT_EQ(error.where(), camera.antialias_at);
+}
+
 TEST(OpenRequest, NeedsAWorldWithAFile) {
   EXPECT_EQ(bad_file_error([] { open_of(busy_world()); }).subject(), "test");
 }

@@ -46,7 +46,7 @@ CompositeRenderer::CompositeRenderer(std::unique_ptr<ViewRenderer> views,
 
 // The view of the last instant tells how near things are, and thereby how far they move.
 void CompositeRenderer::draw(const raster::View& view, const raster::Picture& picture) {
-  assert(picture.depth_m.empty() && picture.entity.empty());
+  assert(picture.depth_m.empty() && picture.entity.empty() && !view.antialias);
   draw_instant(view, 0.0, {0, view.camera.height_px}, picture.rgb);
   if (window_s(view) <= 0.0) return;
   const int instants =

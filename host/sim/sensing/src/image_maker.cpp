@@ -30,20 +30,11 @@ uav::CameraSample ImageMaker::make(const CameraModel& camera, const Request& r) 
   models_.resize(knows_pixels && (has_labels || !world_.anchors.empty()) ? pixels : 0);
   warn_of_blind_pixels(camera, r.sensor);
   place_instants(camera, r);
-  raster::View view;
-  view.camera = lens;
-  view.near_m = near_m(camera);
-  view.far_m = camera.far_m;
-  view.instants = instants_;
-  view.spacing_s = to_seconds(world_.step);
-  view.exposure_s = camera.exposure_s;
-  view.readout_s = camera.readout_s;
-  view.hidden = r.uav;
   raster::Picture picture;
   picture.rgb = sample.rgb;
   picture.depth_m = sample.depth_m;
   picture.entity = models_;
-  renderer().draw(view, picture);
+  draw(camera, r, picture);
   const std::uint64_t stream = random_stream(r.key.uav, r.key.sensor, "pixels");
   add_pixel_noise(camera.pixel_noise, {r.key.seed, stream, r.key.index, r.key.at}, sample.rgb);
   finish_depths(camera, r.key, sample.depth_m);
@@ -51,6 +42,29 @@ uav::CameraSample ImageMaker::make(const CameraModel& camera, const Request& r) 
   sample.knows_anchors = knows_pixels;
   sample.seen_anchors = find_anchors(world_, models_, lens.width_px);
   return sample;
+}
+
+// The samples of an antialiased picture lie beside the centres of its pixels, but depths and models
+// are those of the centres: they are drawn in a second pass without antialiasing.
+void ImageMaker::draw(const CameraModel& camera, const Request& r, raster::Picture picture) {
+  raster::View view;
+  view.camera = camera.intrinsics;
+  view.near_m = near_m(camera);
+  view.far_m = camera.far_m;
+  view.instants = instants_;
+  view.spacing_s = to_seconds(world_.step);
+  view.exposure_s = camera.exposure_s;
+  view.readout_s = camera.readout_s;
+  view.hidden = r.uav;
+  if (camera.antialias) {
+    raster::Picture colors;
+    colors.rgb = std::exchange(picture.rgb, {});
+    view.antialias = true;
+    renderer().draw(view, colors);
+    view.antialias = false;
+    if (picture.depth_m.empty() && picture.entity.empty()) return;
+  }
+  renderer().draw(view, picture);
 }
 
 // The steps that the shutter reaches back, and the image's own instant.

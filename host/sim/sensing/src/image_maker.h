@@ -37,6 +37,7 @@ class ImageMaker {
   std::string renderer_name() const { return renderer_ ? renderer_->name() : std::string(); }
 
  private:
+  void draw(const CameraModel& camera, const Request& r, raster::Picture picture);
   void place_instants(const CameraModel& camera, const Request& r);
   void warn_of_blind_pixels(const CameraModel& camera, const Sensor& sensor);
   CameraRenderer& renderer();

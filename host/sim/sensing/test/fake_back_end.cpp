@@ -14,6 +14,9 @@ class FakeRenderer final : public CameraRenderer {
   void draw(const raster::View& view, const raster::Picture& picture) override {
     DrawLog::Drawn& drawn = log_.drawn.emplace_back();
     drawn.view = view;
+    drawn.has_rgb = !picture.rgb.empty();
+    drawn.has_depth = !picture.depth_m.empty();
+    drawn.has_models = !picture.entity.empty();
     for (const raster::Instant& instant : view.instants) {
       drawn.X_WC.push_back(instant.X_WC);
       drawn.X_WB.emplace_back(instant.X_WB.begin(), instant.X_WB.end());

@@ -16,6 +16,7 @@ struct DrawLog {
   /// A view with copies of its poses.
   struct Drawn {
     raster::View view;
+    bool has_rgb = false, has_depth = false, has_models = false;  ///< what was asked for
     std::vector<uav::Pose> X_WC;
     std::vector<std::vector<uav::Pose>> X_WB;
   };

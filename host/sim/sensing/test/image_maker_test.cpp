@@ -77,6 +77,7 @@ TEST(ImageMakerTest, AnImageIsThePictureThatTheRendererDraws) {
   EXPECT_EQ(drawn.view.near_m, camera_of(shot.world).near_m);
   EXPECT_EQ(drawn.view.far_m, camera_of(shot.world).far_m);
   EXPECT_EQ(drawn.view.hidden, 0U);
+  EXPECT_FALSE(drawn.view.antialias);
 }
 
 // Step by step, from the last that is not after the shutter's window begins.
@@ -145,6 +146,32 @@ TEST(ImageMakerTest, ARendererOfColoursKnowsNoAnchors) {
   const uav::CameraSample image = Camera(std::move(world)).image();
   EXPECT_FALSE(image.knows_anchors);
   EXPECT_TRUE(image.seen_anchors.empty());
+}
+
+// Anchors and depths are those of the centre of each pixel, which antialiasing does not sample.
+TEST(ImageMakerTest, OnlyColoursAreAntialiased) {
+  using uav::CameraKind;
+  for (const bool knows_pixels : {false, true}) {
+    for (const auto kind : {CameraKind::kColor, CameraKind::kRgbd}) {
+      if (kind == CameraKind::kRgbd && !knows_pixels) continue;
+      World world = small_world();
+      world.anchors.emplace_back().anchor.name = world.models.at(0).name;
+      camera_of(world).kind = kind;
+      camera_of(world).antialias = true;
+      Camera shot(std::move(world));
+      shot.log.knows_pixels = knows_pixels;
+      shot.image();
+      ASSERT_EQ(shot.log.drawn.size(), knows_pixels ? 2U : 1U);
+      const DrawLog::Drawn& colors = shot.log.drawn[0];
+      EXPECT_TRUE(colors.view.antialias);
+      EXPECT_TRUE(colors.has_rgb && !colors.has_depth && !colors.has_models);
+      if (!knows_pixels) continue;
+      const DrawLog::Drawn& rest = shot.log.drawn[1];
+      EXPECT_FALSE(rest.view.antialias);
+      EXPECT_TRUE(!rest.has_rgb && rest.has_models);
+      EXPECT_EQ(rest.has_depth, kind == CameraKind::kRgbd);
+    }
+  }
 }
 
 TEST(ImageMakerTest, PixelNoiseDiffersByImageAndSeed) {

@@ -39,7 +39,8 @@ class RunningSimulator {
 
 /// A simulator that a condition can select.
 struct BackEnd {
-  /// Checks that it can read the world. @throws Error(kBadFile) with file and line.
+  /// Checks that the simulator can read the world and has its sensors, to which all profiles have
+  /// been applied. @throws Error(kBadFile) with file and line.
   std::function<void(const sim::World&)> require_readable;
   /// Starts it, or connects to it. @throws Error(kSetup).
   std::function<std::unique_ptr<RunningSimulator>(sim::World, const SimulatorSetup&)> start;

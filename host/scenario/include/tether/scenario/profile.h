@@ -52,6 +52,7 @@ struct SensorProfile {
   std::optional<sim::Noise> pixel_noise;  ///< of a depth camera, of depths [m]
   std::optional<double> exposure_s;
   std::optional<double> readout_s;
+  std::optional<bool> antialias;
 
   // Of an IMU; for all three axes.
   std::optional<sim::Noise> angular_velocity_noise;

@@ -145,6 +145,11 @@ struct CameraModel {
   /// [e − exposure_s, e] with e = sampled_at − readout_s·(H−1−r)/(H−1). Neither is negative, and
   /// both together are at most 1 s.
   double readout_s = 0.0;
+  /// The colour of a pixel at an edge is a mixture by the share of the pixel that each surface
+  /// covers. Otherwise, and always for depths, labels and the visible pixels of anchors, the
+  /// surface in the pixel's centre counts. Only for cameras with colours.
+  bool antialias = false;
+  FileLocation antialias_at{};  ///< where `antialias` was set; empty: in no file
   uav::CameraKind kind = uav::CameraKind::kColor;
   /// Of depths: what is nearer reads −inf, what is farther (or nothing) +inf (REP-117) [m].
   double depth_min_m = 0.0;

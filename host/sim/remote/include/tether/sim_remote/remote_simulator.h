@@ -25,10 +25,10 @@ struct RemoteOptions {
   std::string address{};
 };
 
-/// The protocol's pictures have colours only.
-/// @throws Error(kBadFile), located at the sensor and about its name, for a depth, RGBD or
-/// segmentation camera.
-void require_color_cameras(const World& world);
+/// The protocol's pictures have colours only, and the simulator decides how it samples them.
+/// @throws Error(kBadFile) for a depth, RGBD or segmentation camera, located at the sensor and
+/// about its name; for an antialiased camera, located where that was set and about "antialias".
+void require_remote_cameras(const World& world);
 
 /// A simulator at the other end of a connection, with the world's UAVs added to it. It provides
 /// dynamics, rays and ideal pictures; the sensing library makes the samples from them, as for the
