@@ -97,7 +97,7 @@ void StripRenderer::place(const Job& job, const Strip& strip) {
                   moment_, layer);
     }
   }
-  if (placed_ > 1) set_keys(std::span(layers_).first(placed_));
+  if (placed_ > 1) set_keys(std::span(layers_).first(placed_), primitives_);
 }
 
 std::size_t StripRenderer::layers_of(const Job& job, const Tile& tile) const {
@@ -115,48 +115,46 @@ PixelRect StripRenderer::pixels_with(std::size_t layer, const Job& job, const St
   return pixels;
 }
 
-Exposed StripRenderer::exposed_on(const Job& job, const Tile& tile) const {
+Exposed StripRenderer::exposed_on(const Job& job, const Tile& tile, std::size_t list) const {
   const std::size_t count = layers_of(job, tile);
   const std::size_t step = placed_ / count;
-  return {std::span(layers_).first(placed_), ids_, step / 2, step, count,
-          job.sampling.exposed_px(tile)};
+  return {std::span(layers_).first(placed_), ids_,       list, step / 2, step, count,
+          job.sampling.exposed_px(tile),     primitives_};
 }
 
 void StripRenderer::draw_tile(const Job& job, const Tile& tile, std::size_t list) {
-  const Exposed exposed = exposed_on(job, tile);
-  rasterize(job, exposed, tile, list);
+  const Exposed exposed = exposed_on(job, tile, list);
+  rasterize(job, exposed, tile);
   if (!job.picture.rgb.empty()) {
-    shade(job, exposed, tile, list);
+    shade(job, exposed, tile);
     if (job.lens.blind_pixels() > 0) darken_blind(job.lens, tile);
     store_rgb(job, tile);
   }
   if (!job.picture.depth_m.empty()) store_depth(job, tile);
-  if (!job.picture.entity.empty()) store_entities(job, tile);
+  if (!job.picture.entity.empty()) store_entities(job, exposed, tile);
 }
 
-void StripRenderer::rasterize(const Job& job, const Exposed& exposed, const Tile& tile,
-                              std::size_t list) {
-  const Names names = shades_mean(exposed, list) ? Names::kKeys : Names::kPlaces;
+void StripRenderer::rasterize(const Job& job, const Exposed& exposed, const Tile& tile) {
+  const Names names = shades_mean(exposed) ? Names::kKeys : Names::kPlaces;
   for (std::size_t k = 0; k < exposed.count; ++k) {
     const std::size_t i = exposed.place(k);
     clear(job.view.far_m, ids_[i]);
-    rasterize_nearest(layers_[i], job.lens, tile, layers_[i].opaque[list], names, ids_[i]);
+    rasterize_nearest(layers_[i], job.lens, tile, layers_[i].opaque[exposed.list], names, ids_[i]);
   }
 }
 
 // Whether a tile is shaded for several layers at once: nothing in it is transparent.
-bool StripRenderer::shades_mean(const Exposed& exposed, std::size_t list) {
+bool StripRenderer::shades_mean(const Exposed& exposed) {
   if (exposed.count == 1) return false;
   for (std::size_t k = 0; k < exposed.count; ++k) {
-    if (!exposed.layer(k).transparent[list].empty()) return false;
+    if (!exposed.layer(k).transparent[exposed.list].empty()) return false;
   }
   return true;
 }
 
-void StripRenderer::shade(const Job& job, const Exposed& exposed, const Tile& tile,
-                          std::size_t list) {
+void StripRenderer::shade(const Job& job, const Exposed& exposed, const Tile& tile) {
   const Shading shading{job.scene, job.lens, job.shadows, runs_};
-  if (shades_mean(exposed, list)) {
+  if (shades_mean(exposed)) {
     shade_mean(shading, exposed, tile, pixels_);
     return;
   }
@@ -164,7 +162,7 @@ void StripRenderer::shade(const Job& job, const Exposed& exposed, const Tile& ti
   if (layers > 1) light_ = {};
   for (std::size_t k = 0; k < exposed.count; ++k) {
     raster::shade(shading, exposed.layer(k), tile, exposed.ids(k), pixels_);
-    add_transparent(shading, exposed.layer(k), tile, list, exposed.ids(k));
+    add_transparent(shading, exposed.layer(k), tile, exposed.list, exposed.ids(k));
     if (layers > 1) add_light(shading.table, pixels_, layers, light_);
   }
   if (layers > 1) encode_light(shading.table, light_, pixels_);
@@ -212,9 +210,12 @@ void StripRenderer::store_depth(const Job& job, const Tile& tile) const {
   }
 }
 
-void StripRenderer::store_entities(const Job& job, const Tile& tile) {
-  const std::size_t middle = placed_ / 2;
-  find_entities(layers_[middle], tile, ids_[middle], pixels_);
+void StripRenderer::store_entities(const Job& job, const Exposed& exposed, const Tile& tile) {
+  const std::size_t middle = exposed.count / 2;
+  std::span<const Primitive> by_key;
+  if (shades_mean(exposed)) by_key = exposed.primitives;
+  find_entities(exposed.layer(middle), by_key, tile, exposed.ids(middle), pixels_);
+
   for (int row = 0; row < tile.height; ++row) {
     std::copy_n(pixels_.data() + place_of(0, row), tile.width,
                 job.picture.entity.data() + place_in_picture(job.lens, tile, row));

@@ -39,21 +39,22 @@ class StripRenderer {
   void place(const Job& job, const Strip& strip);
   std::size_t layers_of(const Job& job, const Tile& tile) const;
   PixelRect pixels_with(std::size_t layer, const Job& job, const Strip& strip) const;
-  Exposed exposed_on(const Job& job, const Tile& tile) const;
+  Exposed exposed_on(const Job& job, const Tile& tile, std::size_t list) const;
   void draw_tile(const Job& job, const Tile& tile, std::size_t list);
-  void rasterize(const Job& job, const Exposed& exposed, const Tile& tile, std::size_t list);
-  static bool shades_mean(const Exposed& exposed, std::size_t list);
-  void shade(const Job& job, const Exposed& exposed, const Tile& tile, std::size_t list);
+  void rasterize(const Job& job, const Exposed& exposed, const Tile& tile);
+  static bool shades_mean(const Exposed& exposed);
+  void shade(const Job& job, const Exposed& exposed, const Tile& tile);
   void add_transparent(const Shading& shading, const Layer& layer, const Tile& tile,
                        std::size_t list, const TileIds& opaque);
   void darken_blind(const Lens& lens, const Tile& tile);
   void store_rgb(const Job& job, const Tile& tile) const;
   void store_depth(const Job& job, const Tile& tile) const;
-  void store_entities(const Job& job, const Tile& tile);
+  void store_entities(const Job& job, const Exposed& exposed, const Tile& tile);
 
-  std::size_t placed_ = 0;     ///< layers of the tile that has most
-  std::vector<Layer> layers_;  ///< so many, or more
-  std::vector<TileIds> ids_;   ///< of each layer, in the tile
+  std::size_t placed_ = 0;             ///< layers of the tile that has most
+  std::vector<Layer> layers_;          ///< so many, or more
+  std::vector<TileIds> ids_;           ///< of each layer, in the tile
+  std::vector<Primitive> primitives_;  ///< of all layers, if there are several
   Runs runs_;
   TileIds last_{};
   TileIds next_{};

@@ -75,27 +75,28 @@ TEST(Reach, TellsWhichEdgesPartARectangle) {
   EXPECT_GT(within, 10);
 }
 
-std::vector<Coverage> triangles(const std::vector<std::uint32_t>& primitives) {
-  std::vector<Coverage> all;
+Layer layer_of(const std::vector<std::uint32_t>& primitives) {
+  Layer layer;
+  layer.visuals.push_back({{}, 0, 0, 77});
   for (const std::uint32_t primitive : primitives) {
-    all.emplace_back().primitive = primitive;
+    layer.coverage.emplace_back().primitive = primitive;
   }
-  return all;
+  return layer;
 }
 
-TEST(Keys, AreTheSameForATriangleInAllLayersThatShareItWithTheMiddle) {
-  std::vector<Layer> layers(3);
-  layers[0].coverage = triangles({1, 2, 7, 9});
-  layers[1].coverage = triangles({2, 2, 4, 9});  // the first was cut in two
-  layers[2].coverage = triangles({2, 7, 9, 9});
-  set_keys(layers);
-  EXPECT_THAT(layers[1].keys, ElementsAre(1, 1, 3, 4));
-  const std::uint32_t first = layers[0].first_own_key;
-  const std::uint32_t last = layers[2].first_own_key;
-  EXPECT_THAT(layers[0].keys, ElementsAre(first, 1, first + 2, 4));
-  EXPECT_THAT(layers[2].keys, ElementsAre(1, last + 1, 4, 4));
-  EXPECT_GT(first, 4U) << "is no key of the middle";
-  EXPECT_GE(last, first + 4) << "is no key of the first layer";
+TEST(Keys, AreTheSameForATriangleInAllLayers) {
+  std::vector<Layer> layers{layer_of({1, 2, 7, 9}), layer_of({2, 2, 4, 9}), layer_of({2, 7, 9, 9})};
+  std::vector<Primitive> primitives;
+  set_keys(layers, primitives);
+  EXPECT_THAT(layers[0].keys, ElementsAre(1, 2, 4, 5));
+  EXPECT_THAT(layers[1].keys, ElementsAre(2, 2, 3, 5)) << "the first was cut in two";
+  EXPECT_THAT(layers[2].keys, ElementsAre(2, 4, 5, 5));
+  std::vector<std::uint32_t> numbers;
+  for (const Primitive& primitive : primitives) {
+    numbers.push_back(primitive.number);
+    EXPECT_EQ(primitive.entity, 77U);
+  }
+  EXPECT_THAT(numbers, ElementsAre(1, 2, 4, 7, 9));
 }
 
 }  // namespace

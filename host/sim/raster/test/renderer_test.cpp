@@ -99,6 +99,46 @@ TEST(Renderer, GivesTheGoldenBytesWithAllInstructionsAndThreads) {
   }
 }
 
+// Whatever moves, however fast, seen through whatever lens and shutter.
+TEST(Renderer, GivesTheSameBytesOfAnyViewWithAllInstructionsAndThreads) {
+  SceneParts opaque = rich_parts();
+  opaque.materials[2].alpha = 1.0F;
+  const std::array scenes{Scene(rich_parts()), Scene(opaque)};
+  const std::vector<std::int64_t> targets = hwy::SupportedAndGeneratedTargets();
+  TwoHelpers helpers;
+  for (std::uint64_t seed = 0; seed < 24; ++seed) {
+    const auto some = [&](std::uint64_t i) { return drawn(seed, i, -1.0, 1.0); };
+    const double fast = std::pow(10.0, drawn(seed, 20, -4.0, -0.5));
+    std::vector<uav::Pose> bodies(3);
+    std::vector<Instant> instants;
+    for (int i = 0; i < 3; ++i) {
+      uav::Pose& body = bodies[static_cast<std::size_t>(i)];
+      body.p = (fast * i) * uav::Vec3{some(0), some(1), some(2)};
+      body.q = uav::from_axis_angle({0.0, 0.0, 1.0}, fast * i * some(3));
+      instants.push_back({{(fast * i) * uav::Vec3{some(4), some(5), some(6)},
+                           uav::from_axis_angle({0.6, 0.8, 0.0}, fast * i * some(7))},
+                          {&body, 1}});
+    }
+    View view;
+    view.camera = seed % 3 == 0 ? bent_camera(97, 71) : small_camera(97, 71);
+    view.instants = instants;
+    view.exposure_s = seed % 4 == 0 ? 0.0 : 0.01;
+    view.readout_s = seed % 2 == 0 ? 0.02 : 0.0;
+    view.spacing_s = 0.5 * (view.exposure_s + view.readout_s);
+    view.antialias = seed % 5 == 0;
+    for (const Scene& scene : scenes) {
+      Renderer alone(scene);
+      const std::uint64_t expected = hash_of(draw(alone, view));
+      Renderer helped(scene, &helpers);
+      EXPECT_EQ(hash_of(draw(helped, view)), expected) << seed << ": with helpers";
+      for (std::size_t i = 0; targets.size() > 1 && i < targets.size(); ++i) {
+        const ForcedInstructions forced(targets[i]);
+        EXPECT_EQ(hash_of(draw(alone, view)), expected) << seed << ": " << Renderer::instructions();
+      }
+    }
+  }
+}
+
 struct BadView {
   const char* what;
   std::function<void(View&)> spoil;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 
 namespace tether::raster {
 
@@ -50,21 +51,28 @@ void Layer::clear_facets() {
   facets_.reserve(coverage.size());  // what is referred to stays where it is
 }
 
-void set_keys(std::span<Layer> layers) {
-  const std::vector<Coverage>& middle = layers[layers.size() / 2].coverage;
-  auto next_own = static_cast<std::uint32_t>(middle.size() + 1);
-  for (Layer& layer : layers) {
-    layer.first_own_key = next_own;
-    layer.keys.clear();
-    std::size_t m = 0;
-    for (std::size_t i = 0; i < layer.coverage.size(); ++i) {
-      const std::uint32_t primitive = layer.coverage[i].primitive;
-      while (m < middle.size() && middle[m].primitive < primitive) ++m;
-      const bool is_in_middle = m < middle.size() && middle[m].primitive == primitive;
-      layer.keys.push_back(is_in_middle ? static_cast<std::uint32_t>(m + 1)
-                                        : next_own + static_cast<std::uint32_t>(i));
+void set_keys(std::span<Layer> layers, std::vector<Primitive>& primitives) {
+  primitives.clear();
+  std::vector<Primitive> own;
+  std::vector<Primitive> all;
+  for (const Layer& layer : layers) {
+    own.clear();
+    for (const Coverage& triangle : layer.coverage) {
+      if (!own.empty() && own.back().number == triangle.primitive) continue;
+      own.push_back({triangle.primitive, layer.visuals[triangle.visual].entity});
     }
-    next_own += static_cast<std::uint32_t>(layer.coverage.size());
+    all.clear();
+    std::ranges::set_union(primitives, own, std::back_inserter(all), {}, &Primitive::number,
+                           &Primitive::number);
+    primitives.swap(all);
+  }
+  for (Layer& layer : layers) {
+    layer.keys.clear();
+    std::uint32_t place = 0;
+    for (const Coverage& triangle : layer.coverage) {
+      while (primitives[place].number != triangle.primitive) ++place;
+      layer.keys.push_back(place + 1);
+    }
   }
 }
 

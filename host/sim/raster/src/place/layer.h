@@ -112,7 +112,7 @@ struct Layer {
 
   std::vector<Coverage> coverage;  ///< filled by `place_triangles`, in the order of primitives
   std::vector<PlacedVisual> visuals;
-  /// Of each tile, those that may be seen in it: first the opaque ones.
+  /// Of each tile, those whose bounds overlap those of its samples: first the opaque ones.
   std::vector<std::vector<std::uint32_t>> opaque, transparent;
   std::vector<LightRow> lights;
   bool only_points = false;   ///< the lights are points without shadows
@@ -123,10 +123,7 @@ struct Layer {
     return id == 0 ? 0 : visuals[coverage[id - 1].visual].entity;
   }
 
-  /// Of each triangle, a number that it has in all layers of an exposure: 1 + its first place in
-  /// the middle layer, or, if it is not placed there, `first_own_key` + its place here.
-  std::vector<std::uint32_t> keys;
-  std::uint32_t first_own_key = 0;
+  std::vector<std::uint32_t> keys;  ///< of each triangle, set by `set_keys`
 
   /// Made when a triangle is shaded first: few of those of a layer are. Not safe from two threads.
   /// Holds until the next triangles are placed.
@@ -138,8 +135,15 @@ struct Layer {
   mutable std::vector<Facet> facets_;
 };
 
-/// Sets the keys of all layers.
-void set_keys(std::span<Layer> layers);
+/// A triangle of the scene.
+struct Primitive {
+  std::uint32_t number;
+  std::uint32_t entity;
+};
+
+/// Gives each triangle that is placed in any of the layers a key, which is the same in all of them:
+/// 1 + its place in `primitives`.
+void set_keys(std::span<Layer> layers, std::vector<Primitive>& primitives);
 
 /// Rows of the picture that one worker draws at once.
 struct Strip {

@@ -124,6 +124,7 @@ class Placer {
       lists->resize(place_of(0, tile_rows));
       for (auto& list : *lists) list.clear();
     }
+    find_tile_samples(tile_rows);
     for (const PreparedInstance& instance : scene_.instances) {
       if (is_selected(instance)) place(instance);
     }
@@ -207,16 +208,17 @@ class Placer {
     if (area == 0 || (area > 0 && !both_sides)) return;
     const FixedRect bounds{std::min({p.x, q.x, r.x}), std::min({p.y, q.y, r.y}),
                            std::max({p.x, q.x, r.x}), std::max({p.y, q.y, r.y})};
-    const PixelRect pixels = common_part(lens_.pixels_of(bounds), pixels_);
-    if (pixels.is_empty()) return;
     Coverage coverage{};
-    coverage.pixels = pixels;
+    coverage.pixels = lens_.pixels_of(bounds);
+    const PixelRect pixels = common_part(coverage.pixels, pixels_);
+    if (pixels.is_empty()) return;
     const FixedPoint& second = area < 0 ? r : q;
     const FixedPoint& third = area < 0 ? q : r;
     set_edge(coverage, 0, p, second);
     set_edge(coverage, 1, second, third);
     set_edge(coverage, 2, third, p);
     if (lens_.is_grid() && is_between_pixels(coverage)) return;
+    coverage.pixels = pixels;
     for (std::size_t i = 0; i < 3; ++i) {
       const std::size_t at = corners_[i];
       coverage.corners[i] = {placed_.x[at], placed_.y[at], placed_.z[at]};
@@ -226,7 +228,7 @@ class Placer {
     coverage.triangle = triangle_;
     coverage.depth = depth_of(coverage.corners, layer_.projection, lens_.seen_part(bounds));
     layer_.coverage.push_back(coverage);
-    add_to_tiles(pixels);
+    add_to_tiles(pixels, bounds);
   }
 
   std::size_t place_of(int column, int row) const {
@@ -234,13 +236,29 @@ class Placer {
            static_cast<std::size_t>(column);
   }
 
-  void add_to_tiles(const PixelRect& pixels) {
+  void add_to_tiles(const PixelRect& pixels, const FixedRect& bounds) {
     auto& lists = instance_->transparent ? layer_.transparent : layer_.opaque;
     const auto index = static_cast<std::uint32_t>(layer_.coverage.size() - 1);
     const int last_row = (pixels.y_high - strip_.first_row) / kTile_px;
     for (int row = (pixels.y_low - strip_.first_row) / kTile_px; row <= last_row; ++row) {
       for (int column = pixels.x_low / kTile_px; column <= pixels.x_high / kTile_px; ++column) {
-        lists[place_of(column, row)].push_back(index);
+        const std::size_t tile = place_of(column, row);
+        if (!tile_samples_.empty() && common_part(bounds, tile_samples_[tile]).is_empty()) continue;
+        lists[tile].push_back(index);
+      }
+    }
+  }
+
+  // The pixels of a triangle are known roughly if there is no grid. Which triangles a tile has must
+  // not depend on which tiles are placed at once, though.
+  void find_tile_samples(int tile_rows) {
+    if (lens_.is_grid()) return;
+    for (int row = 0; row < tile_rows; ++row) {
+      for (int column = 0; column < across_; ++column) {
+        const int x = column * kTile_px;
+        const int y = strip_.first_row + row * kTile_px;
+        const PixelRect whole{x, y, x + kTile_px - 1, y + kTile_px - 1};
+        tile_samples_.push_back(lens_.seen_part(lens_.samples_of(common_part(whole, pixels_))));
       }
     }
   }
@@ -254,6 +272,7 @@ class Placer {
   Layer& layer_;
   PixelRect pixels_;
   FixedRect seen_;
+  std::vector<FixedRect> tile_samples_;  // empty for a grid
   Frustum frustum_;
   int across_;
   PlacedVertices placed_;

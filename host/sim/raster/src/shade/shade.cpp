@@ -118,7 +118,7 @@ class Mean {
   void find_runs() {
     Runs& runs = shading_.runs;
     const auto& middle = exposed_.ids(middle_).id;
-    runs.clear(exposed_.keys());
+    runs.clear(exposed_.primitives.size() + 1);
     for_each_run(tile_, exposed_.ids(middle_), [&](std::size_t begin, std::size_t end) {
       runs.add(middle[begin], begin, end, middle_);
     });
@@ -136,7 +136,9 @@ class Mean {
   // The pixels that see a triangle in the middle layer, and then those that do in others.
   void collect(std::uint32_t key) {
     batch_.clear();
+    nearest_ = exposed_.count;
     shading_.runs.for_each(key, [&](std::size_t begin, std::size_t end, std::size_t k) HWY_ATTR {
+      if (distance(k) < distance(nearest_)) nearest_ = k;
       if (k == middle_) batch_.add(begin, end);
     });
     const std::size_t own = batch_.singles().size();
@@ -173,10 +175,10 @@ class Mean {
   }
 
   void add_triangle(std::uint32_t key) {
-    const Seen seen = seen_by_key(key);
+    const Seen seen{nearest_, *find(key, nearest_)};
     const MaterialRow& material = shading_.scene.materials[facet(seen).material];
     const bool may_need_taps = may_need_taps_ && material.first_level > 0;
-    const Seen other = may_need_taps ? farthest_of(seen) : seen;
+    const Seen other = may_need_taps ? farthest_of(key, seen) : seen;
     const LayerTile on{shading_, exposed_.layer(seen.layer), tile_};
     shade_batch(on, facet(seen), batch_, [&](const Place& at, const Cell& c) HWY_ATTR {
       const VI count = seen_at(at);
@@ -215,34 +217,27 @@ class Mean {
   const Facet& facet(const Seen& seen) const {
     return exposed_.layer(seen.layer).facet(shading_.scene, seen.triangle);
   }
-  const std::vector<Coverage>& triangles(std::size_t k) const { return exposed_.layer(k).coverage; }
-
-  Seen seen_by_key(std::uint32_t key) const {
-    if (key <= triangles(middle_).size()) return {middle_, key - 1};
-    std::size_t k = 0;
-    const auto place = [&] { return std::size_t{key} - exposed_.layer(k).first_own_key; };
-    while (place() >= triangles(k).size()) ++k;
-    return {k, place()};
+  std::size_t distance(std::size_t k) const {
+    return k < middle_ ? middle_ - k : 2 * (k - middle_);
   }
 
   // A triangle in the layer that is farthest from the middle, of those in which it is placed.
-  Seen farthest_of(const Seen& seen) const {
+  Seen farthest_of(std::uint32_t key, const Seen& seen) const {
     for (std::size_t k = 0; k < middle_; ++k) {
       for (const std::size_t layer : {exposed_.count - 1 - k, k}) {
-        if (const auto triangle = find(seen, layer)) return {layer, *triangle};
+        if (const auto triangle = find(key, layer)) return {layer, *triangle};
       }
     }
     return seen;
   }
-  // Triangles are in the order of primitives, and nearly in the same places in all layers.
-  std::optional<std::size_t> find(const Seen& seen, std::size_t k) const {
-    const std::vector<Coverage>& all = triangles(k);
-    const std::uint32_t wanted = triangles(seen.layer)[seen.triangle].primitive;
-    std::size_t i = std::min(seen.triangle, all.size());
-    while (i > 0 && all[i - 1].primitive >= wanted) --i;
-    while (i < all.size() && all[i].primitive < wanted) ++i;
-    if (i == all.size() || all[i].primitive != wanted) return std::nullopt;
-    return i;
+  // In the tile's list: what else is placed depends on which tiles are drawn at once.
+  std::optional<std::size_t> find(std::uint32_t key, std::size_t k) const {
+    const Layer& layer = exposed_.layer(k);
+    const std::vector<std::uint32_t>& list = layer.opaque[exposed_.list];
+    const auto key_of = [&](std::uint32_t triangle) { return layer.keys[triangle]; };
+    const auto found = std::ranges::lower_bound(list, key, {}, key_of);
+    if (found == list.end() || key_of(*found) != key) return std::nullopt;
+    return *found;
   }
 
   // Where the pixels look on the texture of a triangle in a layer, whether they see it or not.
@@ -316,6 +311,7 @@ class Mean {
   V share_;
   bool may_need_taps_;
   TileLight light_;
+  std::size_t nearest_ = 0;  // to the middle: a layer with pixels of the present batch
   std::int32_t always_ = 0;  // what a pixel counts that sees the same in all layers
   alignas(64) Whole seen_;   // what each pixel counts that sees the same as in the middle layer
   Whole others_;  // the same of those that see a triangle, but another in the middle layer
@@ -390,10 +386,13 @@ void store_row_on(const std::uint32_t* pixels, int count, std::uint8_t* rgb) {
   }
 }
 
-void find_entities_on(const Layer& layer, const Tile& tile, const TileIds& ids,
-                      TilePixels& entities) {
+void find_entities_on(const Layer& layer, std::span<const Primitive> by_key, const Tile& tile,
+                      const TileIds& ids, TilePixels& entities) {
   for_each_run(tile, ids, [&](std::size_t begin, std::size_t end) {
-    std::fill(entities.data() + begin, entities.data() + end, layer.entity_of(ids.id[begin]));
+    const std::uint32_t id = ids.id[begin];
+    const std::uint32_t entity =
+        by_key.empty() || id == 0 ? layer.entity_of(id) : by_key[id - 1].entity;
+    std::fill(entities.data() + begin, entities.data() + end, entity);
   });
 }
 
@@ -450,8 +449,9 @@ void store_row(const std::uint32_t* pixels, int count, std::uint8_t* rgb) {
   HWY_DYNAMIC_DISPATCH(store_row_on)(pixels, count, rgb);
 }
 
-void find_entities(const Layer& layer, const Tile& tile, const TileIds& ids, TilePixels& entities) {
-  HWY_DYNAMIC_DISPATCH(find_entities_on)(layer, tile, ids, entities);
+void find_entities(const Layer& layer, std::span<const Primitive> by_key, const Tile& tile,
+                   const TileIds& ids, TilePixels& entities) {
+  HWY_DYNAMIC_DISPATCH(find_entities_on)(layer, by_key, tile, ids, entities);
 }
 
 std::size_t end_of_run(std::span<const std::uint32_t> values, std::size_t begin) {

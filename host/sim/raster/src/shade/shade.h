@@ -36,16 +36,14 @@ struct TileLight {
 struct Exposed {
   std::span<const Layer> all_layers;
   std::span<const TileIds> all_ids;
+  std::size_t list;  ///< the place of the tile's triangles in each layer
   std::size_t first, step, count;
-  double motion_px;  ///< during the exposure, at most
+  double motion_px;                       ///< during the exposure, at most
+  std::span<const Primitive> primitives;  ///< by their keys, less 1
 
   std::size_t place(std::size_t k) const { return first + step * k; }
   const Layer& layer(std::size_t k) const { return all_layers[place(k)]; }
   const TileIds& ids(std::size_t k) const { return all_ids[place(k)]; }
-  /// How many keys there are.
-  std::size_t keys() const {
-    return all_layers.back().first_own_key + all_layers.back().coverage.size();
-  }
 };
 
 /// The picture of one layer, without transparent things.
@@ -69,8 +67,9 @@ void encode_light(const LightTable& table, const TileLight& light, TilePixels& p
 /// Three bytes for each of a row's pixels.
 void store_row(const std::uint32_t* pixels, int count, std::uint8_t* rgb);
 
-/// The entities that a tile's pixels show.
-void find_entities(const Layer& layer, const Tile& tile, const TileIds& ids, TilePixels& entities);
+/// The entities that a tile's pixels show. `by_key`: the triangles, if `ids` are keys; else empty.
+void find_entities(const Layer& layer, std::span<const Primitive> by_key, const Tile& tile,
+                   const TileIds& ids, TilePixels& entities);
 
 /// The first of `values` after `begin` that differs from that one.
 std::size_t end_of_run(std::span<const std::uint32_t> values, std::size_t begin);
