@@ -61,7 +61,8 @@ HWY_INLINE VU mixed(VU below, VU above) {
 }
 
 // The mean light of a tile over the layers of an exposure. A pixel is shaded once for all layers in
-// which it sees the same triangle: where that is in the middle layer.
+// which it sees the same triangle: where that is in the middle layer, or in the nearest layer in
+// which the tile sees it.
 class Mean {
  public:
   Mean(const Shading& shading, const Exposed& exposed, const Tile& tile, TilePixels& pixels)
