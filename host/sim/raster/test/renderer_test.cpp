@@ -100,7 +100,7 @@ TEST(Renderer, GivesTheGoldenBytesWithAllInstructionsAndThreads) {
 }
 
 // Whatever moves, however fast, seen through whatever lens and shutter.
-TEST(Renderer, GivesTheSameBytesOfAnyViewWithAllInstructionsAndThreads) {
+TEST(Renderer, DrawsAnyViewTheSameWithAllInstructionsAndThreads) {
   SceneParts opaque = rich_parts();
   opaque.materials[2].alpha = 1.0F;
   const std::array scenes{Scene(rich_parts()), Scene(opaque)};
