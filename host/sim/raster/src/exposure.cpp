@@ -66,8 +66,8 @@ struct TileGrid {
   explicit TileGrid(const uav::CameraModel& camera)
       : width_px(camera.width_px),
         height_px(camera.height_px),
-        across((width_px + kTile_px - 1) / kTile_px),
-        down((height_px + kTile_px - 1) / kTile_px) {}
+        across(tiles_in(width_px)),
+        down(tiles_in(height_px)) {}
 
   std::size_t size() const { return place(0, down); }
   std::size_t place(int column, int row) const {

@@ -110,7 +110,7 @@ class Renderer::Work {
       sampling = {view, lens, scene_.body_radii_m(), middle_};
     }
     const int threads = helpers_ == nullptr ? 1 : helpers_->threads() + 1;
-    const int tile_rows = (rows + kTile_px - 1) / kTile_px;
+    const int tile_rows = tiles_in(rows);
     const int wanted = threads == 1 ? 1 : std::min(tile_rows, threads * kStripsPerThread);
     const int strip_rows = sampling.band_rows() > 0 ? sampling.band_rows()
                                                     : (tile_rows + wanted - 1) / wanted * kTile_px;

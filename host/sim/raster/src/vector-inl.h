@@ -83,10 +83,6 @@ HWY_INLINE Colour scaled(const Colour& c, const Colour& by) {
 HWY_INLINE void add_to(Colour& sum, const Colour& c, V factor) {
   sum = {Add(sum.r, Mul(factor, c.r)), Add(sum.g, Mul(factor, c.g)), Add(sum.b, Mul(factor, c.b))};
 }
-HWY_INLINE Colour select(M mask, const Colour& a, const Colour& b) {
-  return {hn::IfThenElse(mask, a.r, b.r), hn::IfThenElse(mask, a.g, b.g),
-          hn::IfThenElse(mask, a.b, b.b)};
-}
 
 }  // namespace
 }  // namespace tether::raster::HWY_NAMESPACE

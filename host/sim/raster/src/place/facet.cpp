@@ -52,8 +52,8 @@ void set_coordinate(const Facet& facet, const std::array<float, 3>& corners, flo
 void set_normal(const PlacedVisual& visual, const VertexLook& a, const VertexLook& b,
                 const VertexLook& c, Facet& facet) {
   const auto na = rotated(visual.rotation, a.normal);
-  facet.is_flat = a.normal == b.normal && a.normal == c.normal ? -1 : 0;
-  if (facet.is_flat != 0) {
+  facet.is_flat = a.normal == b.normal && a.normal == c.normal;
+  if (facet.is_flat) {
     for (std::size_t i = 0; i < 3; ++i) facet.normal[i] = {na[i], 0.0F, 0.0F};
     return;
   }

@@ -61,7 +61,7 @@ struct alignas(32) Facet {
   };
   Coordinate u, v;
   std::array<std::array<float, 3>, 3> normal;  ///< in C: of corner 1; corners 2 and 3 less that
-  std::int32_t is_flat;                        ///< −1: the normal is the same everywhere; else 0
+  bool is_flat;                                ///< the normal is the same everywhere
   std::uint32_t material;
 };
 
@@ -167,8 +167,12 @@ struct Selection {
 void place_triangles(const PreparedScene& scene, const Lens& lens, const Strip& strip,
                      const Selection& selection, Layer& layer);
 
+/// How many tiles so many pixels in a row or a column take.
+constexpr int tiles_in(int px) {
+  return (px + kTile_px - 1) / kTile_px;
+}
 inline int tiles_across(const Lens& lens) {
-  return (lens.camera().width_px + kTile_px - 1) / kTile_px;
+  return tiles_in(lens.camera().width_px);
 }
 
 }  // namespace tether::raster

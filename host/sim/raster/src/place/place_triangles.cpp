@@ -117,7 +117,7 @@ class Placer {
         across_(tiles_across(lens)) {}
 
   void place_all() {
-    const int tile_rows = (strip_.rows + kTile_px - 1) / kTile_px;
+    const int tile_rows = tiles_in(strip_.rows);
     layer_.coverage.clear();
     layer_.visuals.clear();
     for (auto* lists : {&layer_.opaque, &layer_.transparent}) {

@@ -17,6 +17,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 // The pixels of a tile that see one triangle, shaded together: all its numbers are constants.
 HWY_BEFORE_NAMESPACE();
@@ -168,7 +169,7 @@ HWY_INLINE void shade_batch(const LayerTile& on, const Facet& facet, const Batch
       light_cells<false, false>, light_cells<false, true>, light_cells<true, false>,
       light_cells<true, true>};
   const bool is_textured = on.shading.scene.materials[facet.material].first_level > 0;
-  const auto light_some = kLightCells[(is_textured ? 2U : 0U) + (facet.is_flat != 0 ? 1U : 0U)];
+  const auto light_some = kLightCells[(is_textured ? 2U : 0U) + (facet.is_flat ? 1U : 0U)];
   for (std::size_t first = 0; first < batch.vectors(); first += kCells) {
     const std::size_t count = std::min(kCells, batch.vectors() - first);
     light_some(on, facet, batch, first, count, cells);

@@ -13,8 +13,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <span>
-#include <type_traits>
 
 // The surface of a triangle at several pixels.
 HWY_BEFORE_NAMESPACE();
@@ -155,9 +153,9 @@ struct Surface {
   Colour base, diffuse;
 };
 
+// Of a curved triangle.
 HWY_INLINE Normal normal_at(const Facet& f, const Spot& s) {
   const auto& n = f.normal;
-  if (f.is_flat != 0) return {set(n[0][0]), set(n[1][0]), set(n[2][0])};
   const V second = value_at(f.second, 0.0F, 1.0F, s);
   const V third = value_at(f.third, 0.0F, 1.0F, s);
   const auto mixed = [&](const std::array<float, 3>& corners) HWY_ATTR {
