@@ -158,8 +158,19 @@ class Renderer::Work {
   Moment moment_;
 };
 
+void check_processor() {
+  if ((hwy::SupportedTargets() & HWY_TARGETS) == 0) {
+    throw Error(
+        ErrorCode::kSetup,
+        "this processor lacks the SSSE3 instructions, with which cameras are simulated: use "
+        "one of 2006 or later, or give a virtual machine the processor of its host");
+  }
+}
+
 Renderer::Renderer(const Scene& scene, Helpers* helpers)
-    : work_(std::make_unique<Work>(scene, helpers)) {}
+    : work_(std::make_unique<Work>(scene, helpers)) {
+  check_processor();
+}
 
 Renderer::~Renderer() = default;
 

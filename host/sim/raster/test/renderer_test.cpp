@@ -99,6 +99,17 @@ TEST(Renderer, GivesTheGoldenBytesWithAllInstructionsAndThreads) {
   }
 }
 
+TEST(Renderer, RefusesAProcessorWithoutTheInstructionsItNeeds) {
+  const Scene scene(rich_parts());
+  const ForcedInstructions none(HWY_SCALAR);
+  try {
+    const Renderer renderer(scene);
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ErrorCode::kSetup);
+  }
+}
+
 // Whatever moves, however fast, seen through whatever lens and shutter.
 TEST(Renderer, DrawsAnyViewTheSameWithAllInstructionsAndThreads) {
   SceneParts opaque = rich_parts();

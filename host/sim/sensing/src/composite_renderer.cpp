@@ -10,6 +10,8 @@
 #include <cassert>
 #include <utility>
 
+#include <tether/sim_raster/renderer.h>
+
 namespace tether::sim {
 namespace {
 
@@ -22,6 +24,7 @@ std::size_t bytes_of(const uav::CameraModel& camera) {
 
 std::unique_ptr<CameraRenderer> make_composite_renderer(std::unique_ptr<ViewRenderer> views,
                                                         std::vector<double> body_radii_m) {
+  raster::check_processor();
   return std::make_unique<CompositeRenderer>(std::move(views), std::move(body_radii_m));
 }
 

@@ -42,25 +42,12 @@ HWY_INLINE TexturePoint texture_point(const Facet& f, const Spot& s) {
 
 // Two numbers of 16 bits for each pixel: their products, and the upper halves of these.
 HWY_INLINE VU times(VU a, VU b) {
-#if HWY_TARGET == HWY_SCALAR
-  const std::uint32_t x = hn::GetLane(a);
-  const std::uint32_t y = hn::GetLane(b);
-  return hn::Set(DU(), ((x & 0xFFFFU) * (y & 0xFFFFU) & 0xFFFFU) | (x >> 16U) * (y >> 16U) << 16U);
-#else
   const hn::Repartition<std::uint16_t, DU> dh;
   return hn::BitCast(DU(), Mul(hn::BitCast(dh, a), hn::BitCast(dh, b)));
-#endif
 }
 HWY_INLINE VU times_high(VU a, VU b) {
-#if HWY_TARGET == HWY_SCALAR
-  const std::uint32_t x = hn::GetLane(a);
-  const std::uint32_t y = hn::GetLane(b);
-  return hn::Set(DU(),
-                 (x & 0xFFFFU) * (y & 0xFFFFU) >> 16U | ((x >> 16U) * (y >> 16U) & 0xFFFF0000U));
-#else
   const hn::Repartition<std::uint16_t, DU> dh;
   return hn::BitCast(DU(), hn::MulHigh(hn::BitCast(dh, a), hn::BitCast(dh, b)));
-#endif
 }
 
 // The same number, below 2^16, in both halves.
@@ -80,34 +67,6 @@ struct Places {
 // 32nd of a byte), so that white leaves a colour as it is when it is rounded.
 inline constexpr std::int16_t kTexelZero = 128 * 255 / 2 + 4;
 
-#if HWY_TARGET == HWY_SCALAR
-// The product of fractions of 2^15, rounded.
-inline std::int32_t product(std::int32_t a, std::int32_t b) {
-  return (a * b + 0x4000) >> 15;
-}
-struct Texels {
-  std::array<std::int32_t, 4> channels;  // from 0 to kTexelWhite
-};
-
-inline Texels mixed(const TexelPair* pairs, const Places& own, const Places* next) {
-  Texels sum{};
-  sum.channels.fill(kTexelZero);
-  for (std::size_t level = 0; level < (next == nullptr ? 1U : 2U); ++level) {
-    const Places& from = level == 0 ? own : *next;
-    const std::uint32_t rows = hn::GetLane(from.rows);
-    const std::uint32_t columns = hn::GetLane(from.columns);
-    for (unsigned side = 0; side < 2; ++side) {
-      const TexelPair& pair = pairs[from.pair[0] + static_cast<std::int32_t>(side)];
-      for (std::size_t i = 0; i < 4; ++i) {
-        const int row_sum = pair.channels[i][0] * static_cast<int>(rows & 0xFFU) +
-                            pair.channels[i][1] * static_cast<int>(rows >> 8U);
-        sum.channels[i] += product(row_sum, static_cast<int>(columns >> (16 * side) & 0xFFFFU));
-      }
-    }
-  }
-  return sum;
-}
-#else
 using DH = hn::Repartition<std::int16_t, DI>;
 using VH = hn::Vec<DH>;
 
@@ -189,7 +148,6 @@ HWY_INLINE Texels mixed(const TexelPair* pairs, const Places& own, const Places*
   return {sum_of_columns(weighted<0>(pairs, own, next), weighted<1>(pairs, own, next)),
           sum_of_columns(weighted<2>(pairs, own, next), weighted<3>(pairs, own, next))};
 }
-#endif
 
 HWY_INLINE V squared_length(V u, V v, V width, V height) {
   const V x = Mul(u, width);
@@ -254,11 +212,7 @@ HWY_INLINE Places places_at(const Level& level, V u, V v, VU share) {
 // have textures.
 inline constexpr std::int16_t kTexelWhite = kTexelZero + 2 * ((127 * 255 * 8192 + 0x4000) >> 15);
 HWY_INLINE Texels white() {
-#if HWY_TARGET == HWY_SCALAR
-  return {{kTexelWhite, kTexelWhite, kTexelWhite, kTexelWhite}};
-#else
   return {hn::Set(DH(), kTexelWhite), hn::Set(DH(), kTexelWhite)};
-#endif
 }
 
 // What some pixels see of their textures. `level`: 256 times the row of PreparedScene::levels.
@@ -283,15 +237,6 @@ HWY_INLINE VU share_of_32767(V x) {
 
 // The pixels of surfaces with textures. The channels become bytes only here.
 HWY_INLINE VU pixels(const Colour& c, V alpha, const Texels& t) {
-#if HWY_TARGET == HWY_SCALAR
-  const std::array light{c.r, c.g, c.b, alpha};
-  std::uint32_t result = 0;
-  for (unsigned i = 0; i < 4; ++i) {
-    const auto of_light = static_cast<std::int32_t>(hn::GetLane(share_of_32767(light[i])));
-    result |= static_cast<std::uint32_t>(product(product(t.channels[i], of_light), 257)) << (8 * i);
-  }
-  return hn::Set(DU(), result);
-#else
   const VU red_green = hn::Or(share_of_32767(c.r), hn::ShiftLeft<16>(share_of_32767(c.g)));
   const VU blue_alpha = hn::Or(share_of_32767(c.b), hn::ShiftLeft<16>(share_of_32767(alpha)));
   const VH to_byte = hn::Set(DH(), 257);
@@ -303,7 +248,6 @@ HWY_INLINE VU pixels(const Colour& c, V alpha, const Texels& t) {
   const VU second = bytes(t.second, hn::InterleaveUpper(DU(), red_green, blue_alpha));
   return hn::TableLookupBytes(hn::Or(first, hn::ShiftLeft<8>(second)),
                               four<0x06040200U, 0x0E0C0A08U, 0x07050301U, 0x0F0D0B09U>());
-#endif
 }
 }  // namespace
 }  // namespace tether::raster::HWY_NAMESPACE

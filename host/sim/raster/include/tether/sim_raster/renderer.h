@@ -36,6 +36,10 @@ class Helpers {
   Helpers() = default;
 };
 
+/// @throws Error(kSetup) on a processor without the instructions that pictures and their noise
+/// need.
+void check_processor();
+
 /// Draws pictures of a scene.
 ///
 /// The same scene and view give the same bytes, whatever was drawn before, on any processor and
@@ -43,6 +47,7 @@ class Helpers {
 class Renderer {
  public:
   /// Draws on the calling thread, with `helpers` if there are any. Both must outlive this object.
+  /// @throws what check_processor does.
   explicit Renderer(const Scene& scene, Helpers* helpers = nullptr);
   ~Renderer();
   Renderer(const Renderer&) = delete;
