@@ -106,7 +106,7 @@ std::vector<float> nearest_by_tile(const TileGrid& grid, const Lens& lens, const
           const Coverage& coverage = layer.coverage[triangle];
           const FixedRect part = lens.samples_of(common_part(tile, coverage.pixels));
           if (reach(coverage, part, 7U).is_none) continue;
-          own = std::max(own, depth_range(coverage.depth, part).high);
+          own = std::max(own, most_inverse_depth(coverage.depth, part));
         }
       }
       grid.for_each_near(tile,

@@ -40,15 +40,14 @@ std::vector<FixedRect> points(const FixedRect& r, std::uint64_t seed) {
   return all;
 }
 
-TEST(DepthRange, HoldsTheDepthsOfARectangle) {
+TEST(InverseDepth, IsNowhereInARectangleMoreThanItsMost) {
   const Layer layer = sheet();
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
     const DepthPlane& depth = layer.coverage[seed % layer.coverage.size()].depth;
     const FixedRect whole = rect(seed);
-    const DepthRange range = depth_range(depth, whole);
+    const float most = most_inverse_depth(depth, whole);
     for (const FixedRect& point : points(whole, seed)) {
-      EXPECT_GE(depth_range(depth, point).low, range.low) << seed;
-      EXPECT_LE(depth_range(depth, point).high, range.high) << seed;
+      EXPECT_LE(most_inverse_depth(depth, point), most) << seed;
     }
   }
 }

@@ -22,18 +22,17 @@ Reach reach(const Coverage& triangle, const FixedRect& rect, unsigned edges) {
   return result;
 }
 
-// Each operation is monotonic, so that both are at corners. Beyond the depths of its own corners
-// the plane of a triangle that is seen nearly edge-on overshoots.
-DepthRange depth_range(const DepthPlane& depth, const FixedRect& rect) {
+// Each operation is monotonic, so that it is at a corner. Beyond the depths of its own corners the
+// plane of a triangle that is seen nearly edge-on overshoots.
+float most_inverse_depth(const DepthPlane& depth, const FixedRect& rect) {
   const auto at = [&](std::int32_t x, std::int32_t y) {
     const float dx = static_cast<float>(x) / kSubpixels - depth.x_ref;
     const float dy = static_cast<float>(y) / kSubpixels - depth.y_ref;
     const auto& p = depth.plane;
     return std::clamp((p[0] + p[2] * dy) + p[1] * dx, depth.low, depth.high);
   };
-  const auto [low, high] = std::minmax({at(rect.x_low, rect.y_low), at(rect.x_high, rect.y_low),
-                                        at(rect.x_low, rect.y_high), at(rect.x_high, rect.y_high)});
-  return {low, high};
+  return std::max({at(rect.x_low, rect.y_low), at(rect.x_high, rect.y_low),
+                   at(rect.x_low, rect.y_high), at(rect.x_high, rect.y_high)});
 }
 
 const Facet& Layer::facet(const PreparedScene& scene, std::size_t triangle) const {

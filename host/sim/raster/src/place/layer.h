@@ -73,11 +73,8 @@ struct Reach {
 /// Of those in `edges` only: all samples are inside of the others.
 Reach reach(const Coverage& triangle, const FixedRect& rect, unsigned edges);
 
-/// The least and the most 1/depth over a rectangle [1/m].
-struct DepthRange {
-  float low, high;
-};
-DepthRange depth_range(const DepthPlane& depth, const FixedRect& rect);
+/// The most 1/depth over a rectangle [1/m].
+float most_inverse_depth(const DepthPlane& depth, const FixedRect& rect);
 
 /// A light as the shading reads it, in C.
 struct LightRow {

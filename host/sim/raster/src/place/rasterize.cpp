@@ -18,7 +18,6 @@ namespace {
 
 // Keeps a triangle where it is nearer than the present one.
 struct Nearest {
-  static constexpr bool kKeepsNearest = true;
   TileIds& ids;
 
   void take(std::size_t at, M inside, V inverse_depth, VU id) const {
@@ -34,7 +33,6 @@ struct Nearest {
 
 // Keeps the farthest triangle that is nearer than `last`. Ids order equally far ones.
 struct Next {
-  static constexpr bool kKeepsNearest = false;
   const TileIds& last;
   TileIds& next;
 
@@ -127,16 +125,6 @@ class GridEdges {
     }
     return false;
   }
-  // Whether all are.
-  bool covers(int columns, int rows) const {
-    std::int32_t least = 0;
-    for (std::size_t i = 0; i < 3; ++i) {
-      least = std::min(
-          least, at_[i] + std::min(0, t_.a[i] * (columns - 1)) + std::min(0, t_.b[i] * (rows - 1)));
-    }
-    return least == 0;
-  }
-
   // Of one edge: the first row's first vector, and the steps to the next ones.
   struct Walk {
     VI first, column_step, row_step;
@@ -157,17 +145,21 @@ class GridEdges {
   std::array<std::int32_t, 3> at_{};
 };
 
-// A triangle's pixels in a part of a tile, of which it covers all or some.
-template <bool kCoversAll, class Target>
-HWY_INLINE void take_part(const GridEdges& edges, const Depth& depth, VU ids, const Tile& tile,
-                          const Part& part, const Target& target) {
-  const D d;
-  const DI di;
-  const std::size_t vectors =
-      (static_cast<std::size_t>(part.columns) + hn::Lanes(d) - 1) / hn::Lanes(d);
-  const V lane = lane_numbers();
-  const V first_x = Add(lane, hn::Set(d, static_cast<float>(tile.x + part.first_column)));
-  const V x_step = hn::Set(d, static_cast<float>(hn::Lanes(d)));
+// Vectors without a pixel of the triangle are not left out: guessing which ones that are costs
+// more.
+template <class Target>
+void rasterize_on_grid(const Coverage& t, std::uint32_t id, const Tile& tile,
+                       const Target& target) {
+  const Part part(tile, t.pixels);
+  const int left = tile.x + part.first_column;
+  const int top = tile.y + part.first_row;
+  const GridEdges edges(t, left, top);
+  if (edges.misses(part.columns, part.rows)) return;
+  const Depth depth(t.depth);
+  const VU ids = hn::Set(DU(), id);
+  const std::size_t vectors = (static_cast<std::size_t>(part.columns) + lanes() - 1) / lanes();
+  const V first_x = Add(lane_numbers(), set(static_cast<float>(left)));
+  const V x_step = set(static_cast<float>(lanes()));
   const GridEdges::Walk e0 = edges.walk(0);
   const GridEdges::Walk e1 = edges.walk(1);
   const GridEdges::Walk e2 = edges.walk(2);
@@ -175,54 +167,24 @@ HWY_INLINE void take_part(const GridEdges& edges, const Depth& depth, VU ids, co
   VI row1 = e1.first;
   VI row2 = e2.first;
   for (int row = 0; row < part.rows; ++row) {
-    const V depth_row = depth.row(static_cast<float>(tile.y + part.first_row + row));
+    const V depth_row = depth.row(static_cast<float>(top + row));
     std::size_t at = place_of(part.first_column, part.first_row + row);
     V x = first_x;
     VI at0 = row0;
     VI at1 = row1;
     VI at2 = row2;
-    for (std::size_t i = 0; i < vectors; ++i, at += hn::Lanes(d)) {
-      const M inside = hn::RebindMask(
-          d, hn::Gt(kCoversAll ? hn::Zero(di) : hn::Or(hn::Or(at0, at1), at2), hn::Set(di, -1)));
-      if (kCoversAll || !hn::AllFalse(d, inside)) {
-        target.take(at, inside, depth.at(depth_row, x), ids);
-      }
-      x = hn::Add(x, x_step);
-      at0 = hn::Add(at0, e0.column_step);
-      at1 = hn::Add(at1, e1.column_step);
-      at2 = hn::Add(at2, e2.column_step);
+    for (std::size_t i = 0; i < vectors; ++i, at += lanes()) {
+      const auto inside = hn::Gt(hn::Or(hn::Or(at0, at1), at2), whole(-1));
+      target.take(at, float_mask(inside), depth.at(depth_row, x), ids);
+      x = Add(x, x_step);
+      at0 = Add(at0, e0.column_step);
+      at1 = Add(at1, e1.column_step);
+      at2 = Add(at2, e2.column_step);
     }
-    row0 = hn::Add(row0, e0.row_step);
-    row1 = hn::Add(row1, e1.row_step);
-    row2 = hn::Add(row2, e2.row_step);
+    row0 = Add(row0, e0.row_step);
+    row1 = Add(row1, e1.row_step);
+    row2 = Add(row2, e2.row_step);
   }
-}
-
-// `hidden` is the 1/depth at which all of the tile is taken already.
-template <class Target>
-void rasterize_on_grid(const Coverage& t, std::uint32_t id, const Tile& tile, const Target& target,
-                       float& hidden) {
-  const Part part(tile, t.pixels);
-  const int x = tile.x + part.first_column;
-  const int y = tile.y + part.first_row;
-  const GridEdges edges(t, x, y);
-  if (edges.misses(part.columns, part.rows)) return;
-  const DepthRange range =
-      depth_range(t.depth, {x * kSubpixels, y * kSubpixels, (x + part.columns - 1) * kSubpixels,
-                            (y + part.rows - 1) * kSubpixels});
-  if (Target::kKeepsNearest && range.high <= hidden) return;
-  const Depth depth(t.depth);
-  const VU ids = hn::Set(DU(), id);
-  // The last vector's pixels beyond the part as well.
-  const int lanes = static_cast<int>(hn::Lanes(D()));
-  const int columns = (part.columns + lanes - 1) / lanes * lanes;
-  if (!edges.covers(columns, part.rows)) {
-    take_part<false>(edges, depth, ids, tile, part, target);
-    return;
-  }
-  take_part<true>(edges, depth, ids, tile, part, target);
-  const bool is_whole = part.columns == tile.width && part.rows == tile.height;
-  if (is_whole) hidden = std::max(hidden, range.low);
 }
 
 // An edge at each sample of a row: whole numbers that doubles hold exactly; as floats they keep
@@ -255,14 +217,12 @@ V in_pixels(const std::int32_t* samples) {
 // `bounds` are those of all of the tile's samples.
 template <class Target>
 void rasterize_samples(const Coverage& t, std::uint32_t id, const Tile& tile, const Lens& lens,
-                       const FixedRect& bounds, const Target& target, float& hidden) {
+                       const FixedRect& bounds, const Target& target) {
   const D d;
   const int lanes = static_cast<int>(hn::Lanes(d));
   const Reach of_tile = reach(t, bounds, 7U);
   if (of_tile.is_none) return;
   const Depth depth(t.depth);
-  const DepthRange range = depth_range(t.depth, bounds);
-  if (Target::kKeepsNearest && range.high <= hidden) return;
   const Part part(tile, t.pixels);
   const VU ids = hn::Set(DU(), id);
   alignas(64) std::array<float, kTile_px> least{};
@@ -292,7 +252,6 @@ void rasterize_samples(const Coverage& t, std::uint32_t id, const Tile& tile, co
                   depth.at(depth_row, in_pixels(x + c)), ids);
     }
   }
-  if (of_tile.edges == 0) hidden = std::max(hidden, range.low);
 }
 
 template <class Target>
@@ -300,13 +259,12 @@ void rasterize_all(const Layer& layer, const Lens& lens, const Tile& tile,
                    std::span<const std::uint32_t> triangles, Names names, const Target& target) {
   const FixedRect bounds =
       lens.samples_of({tile.x, tile.y, tile.x + tile.width - 1, tile.y + tile.height - 1});
-  float hidden = 0.0F;
   for (const std::uint32_t i : triangles) {
     const std::uint32_t id = names == Names::kKeys ? layer.keys[i] : i + 1;
     if (lens.is_grid()) {
-      rasterize_on_grid(layer.coverage[i], id, tile, target, hidden);
+      rasterize_on_grid(layer.coverage[i], id, tile, target);
     } else {
-      rasterize_samples(layer.coverage[i], id, tile, lens, bounds, target, hidden);
+      rasterize_samples(layer.coverage[i], id, tile, lens, bounds, target);
     }
   }
 }
