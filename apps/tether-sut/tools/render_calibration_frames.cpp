@@ -20,7 +20,10 @@
 
 namespace {
 
-using namespace tether;
+namespace sim = tether::sim;
+namespace uav = tether::uav;
+using tether::Error;
+using tether::ErrorCode;
 
 /// Steps in which the tracker can follow.
 constexpr double kYaws_deg[] = {-24.0, -22.0, -20.0, -18.0, -16.0, -14.0};
@@ -30,7 +33,7 @@ uav::CameraSample render(const std::filesystem::path& sources, double yaw_deg) {
                                   .uavs = {{"uav1",
                                             sources / "data/models/hummingbird/model.sdf",
                                             {1.2, 0.0, 1.2},
-                                            rad_from_deg(yaw_deg)}},
+                                            tether::rad_from_deg(yaw_deg)}},
                                   .anchors = {"blue_box"}};
   sim::World world = sim::load_world(request, {});
   auto& sensors = world.uavs.front().sensors;

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <tether/base/units.h>
+#include <tether/campaign/metrics.h>
 
 // What arrived of messages between UAVs.
 namespace tether::campaign {

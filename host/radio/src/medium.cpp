@@ -30,7 +30,7 @@ void Medium::schedule(SimTime at, std::size_t uav, Kind kind, Message message) {
   events_.push({{at, uav}, events_made_++, kind, std::move(message)});
 }
 
-void Medium::send(Message message) {
+void Medium::send(const Message& message) {
   schedule(message.sent_at, message.from, Kind::kSend, message);
 }
 

@@ -1,3 +1,4 @@
+#include <tether/base/error.h>
 #include <tether/workers/engine.h>
 #include <tether/workers/worker.h>
 

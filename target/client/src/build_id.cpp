@@ -48,6 +48,7 @@ int take_program(dl_phdr_info* object, std::size_t, void* out) {
   for (int i = 0; i < object->dlpi_phnum && id.empty(); ++i) {
     const ElfW(Phdr)& segment = object->dlpi_phdr[i];
     if (segment.p_type != PT_NOTE) continue;
+    // NOLINTNEXTLINE(performance-no-int-to-ptr): the loader gives addresses as numbers
     id = find_build_id(reinterpret_cast<const char*>(object->dlpi_addr + segment.p_vaddr),
                        segment.p_memsz);
   }

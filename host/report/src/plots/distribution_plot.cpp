@@ -104,7 +104,7 @@ std::vector<Row> rows_of(const campaign::ScenarioResults& scenario,
     for (const campaign::TrialResult& trial : condition.trials)
       for (const judge::ClauseVerdict& own : trial.clauses) {
         if (own.uav != clause.uav || own.name != clause.name) continue;
-        const std::vector<double> values = values_of(own);
+        const std::vector<double>& values = values_of(own);
         row.flown += values.empty() ? 0U : 1U;
         row.values.insert(row.values.end(), values.begin(), values.end());
       }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ranges>
 #include <string>
 #include <vector>
 
@@ -150,8 +149,8 @@ std::string success_script(const SizeReport& report) {
     // The band as a closed curve: its lower edge forth, its upper edge back.
     DataBlock band("band");
     for (const CurvePoint& point : sized.curve) band.add(point.slowdown, point.share.low);
-    for (const CurvePoint& point : std::views::reverse(sized.curve))
-      band.add(point.slowdown, point.share.high);
+    for (auto point = sized.curve.rbegin(); point != sized.curve.rend(); ++point)
+      band.add(point->slowdown, point->share.high);
     drawing.add(band, "with filledcurves closed", kCurve, "", "fillstyle solid 0.2 noborder");
     add_curve(drawing, sized, "curve", kCurve, "success");
   }

@@ -154,7 +154,7 @@ Table sweep_table(const Sweep& sweep) {
   for (const std::string& name : first.metrics) {
     const campaign::MetricValue* metric = find_metric(sweep, name);
     headings.push_back(metric != nullptr ? with_unit(metric->label, metric->unit) : name);
-    headings.push_back("95 % interval");
+    headings.emplace_back("95 % interval");
   }
   table.headings = {single_headings(headings)};
   for (const campaign::ScenarioResults* point : sweep.points) {
@@ -165,7 +165,7 @@ Table sweep_table(const Sweep& sweep) {
       row.push_back(condition.condition);
       row.push_back(fmt::format("{} of {}", condition.count(campaign::Outcome::kGoalReached),
                                 condition.trials.size()));
-      row.push_back(kNone);
+      row.emplace_back(kNone);
       if (!condition.trials.empty()) {
         const sizing::Share share = reached_share(condition);
         row.back() = fmt::format("{:.0f} to {:.0f} %", 100.0 * share.low, 100.0 * share.high);

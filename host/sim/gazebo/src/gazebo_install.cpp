@@ -27,7 +27,7 @@ std::string variable(const char* name) {
 }
 
 /// The list, followed by the user's value of the variable.
-std::string before_users(std::string list, const char* name) {
+std::string before_users(const std::string& list, const char* name) {
   const std::string given = variable(name);
   return given.empty() ? list : list + ":" + given;
 }

@@ -8,8 +8,8 @@ const bool kHasMujoco = false;
 std::unique_ptr<Simulator> make_mujoco_simulator(World /*world*/, const WarningSink& /*warn*/,
                                                  int /*threads_ahead*/) {
   throw Error(ErrorCode::kSetup,
-              "this build has no embedded simulator: install libmujoco-dev, libassimp-dev and "
-              "libegl-dev, and build again");
+              "this build has no embedded simulator: install libmujoco-dev and libassimp-dev, "
+              "and build again");
 }
 
 }  // namespace tether::sim

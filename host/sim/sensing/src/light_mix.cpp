@@ -53,6 +53,7 @@ void LightMix::add(std::size_t first, std::span<const std::uint8_t> rgb, double 
 void LightMix::encode(std::span<std::uint8_t> rgb) const {
   static const std::array<std::uint8_t, kWhite + 1> kBytes = make_bytes();
   std::transform(light_.begin(), light_.end(), rgb.begin(), [](float light) {
+    // NOLINTNEXTLINE(bugprone-incorrect-roundings): light is not negative
     const int rounded = static_cast<int>(light + 0.5F);
     return kBytes[static_cast<std::size_t>(std::min(rounded, kWhite))];
   });

@@ -88,10 +88,11 @@ tether_status tether_read_camera(tether_vehicle* vehicle, const char* sensor, te
   if (!are_given(out)) return TETHER_INVALID;
   *out = nullptr;
   if (!are_given(vehicle, sensor)) return TETHER_INVALID;
-  return read(vehicle, sensor, mode, &tether::client::Vehicle::read_camera, [&](auto&& sample) {
-    *out = new tether_image(std::move(sample));
-    return TETHER_OK;
-  });
+  return read(vehicle, sensor, mode, &tether::client::Vehicle::read_camera,
+              [&](tether::uav::CameraSample sample) {
+                *out = new tether_image(std::move(sample));
+                return TETHER_OK;
+              });
 }
 
 tether_status tether_image_copy(const tether_image* image, tether_image** out) noexcept {

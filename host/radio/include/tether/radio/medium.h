@@ -74,7 +74,7 @@ class Medium {
   };
 
   /// @pre not before an event that was handled: (sent_at, from) ≥ its (at, uav).
-  void send(Message message);
+  void send(const Message& message);
   /// The next event: nothing happens before, unless a message is sent. None: nothing is in transit.
   std::optional<Instant> next() const;
   /// What lies between two UAVs now.

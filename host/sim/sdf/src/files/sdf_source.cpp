@@ -131,7 +131,7 @@ auto ask_library(const fs::path& file, Question question) try {
 /// Of any SDF document, to read a file into. The reader copies what it needs of the description,
 /// which all documents share: a whole copy takes as long as reading a small file.
 sdf::SDFPtr empty_sdf() {
-  const sdf::ElementPtr description = sdf_description();
+  const sdf::ElementPtr& description = sdf_description();
   auto root = std::make_shared<sdf::Element>();
   root->SetName(description->GetName());
   root->SetRequired(description->GetRequired());

@@ -56,7 +56,7 @@ class Session {
   protocol::State state() const;
 
   void handle(const protocol::Open& open);
-  void handle(const protocol::Reset& reset);
+  void handle(const protocol::Reset& wanted);
   void handle(const protocol::Advance& advance);
   void handle(const protocol::CastRays& rays);
   void handle(const protocol::Render& view);
