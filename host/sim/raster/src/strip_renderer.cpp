@@ -17,6 +17,9 @@ struct Offset {
 constexpr std::array<Offset, 4> kOffsets{
     {{-0.125, -0.375}, {0.375, -0.125}, {-0.375, 0.125}, {0.125, 0.375}}};
 
+// Of 32 surfaces of which a tenth is opaque, what is behind has 3 % left.
+constexpr std::size_t kMostTransparent = 32;
+
 // Calls `use` with each tile of a strip and the place of its lists.
 template <class Use>
 void for_each_tile(const Lens& lens, const Strip& strip, Use use) {
@@ -168,14 +171,19 @@ void StripRenderer::shade(const Job& job, const Exposed& exposed, const Tile& ti
   if (layers > 1) encode_light(shading.table, light_, pixels_);
 }
 
+// The nearest ones are found first, and mixed in last. Those behind kMostTransparent are left out.
 void StripRenderer::add_transparent(const Shading& shading, const Layer& layer, const Tile& tile,
                                     std::size_t list, const TileIds& opaque) {
   if (layer.transparent[list].empty()) return;
-  last_ = opaque;
-  while (rasterize_next(layer, shading.lens, tile, layer.transparent[list], last_, next_)) {
-    shade_over(shading, layer, tile, next_, pixels_);
-    std::swap(last_, next_);
+  transparent_.resize(kMostTransparent + 1);
+  clear(0.0, transparent_[0]);  // before everything
+  std::size_t count = 0;
+  while (count < kMostTransparent &&
+         rasterize_next(layer, shading.lens, tile, layer.transparent[list], opaque,
+                        transparent_[count], transparent_[count + 1])) {
+    ++count;
   }
+  for (; count > 0; --count) shade_over(shading, layer, tile, transparent_[count], pixels_);
 }
 
 void StripRenderer::darken_blind(const Lens& lens, const Tile& tile) {

@@ -56,8 +56,7 @@ class StripRenderer {
   std::vector<TileIds> ids_;           ///< of each layer, in the tile
   std::vector<Primitive> primitives_;  ///< of all layers, if there are several
   Runs runs_;
-  TileIds last_{};
-  TileIds next_{};
+  std::vector<TileIds> transparent_;  ///< the nearest triangles, the next ones, and so on
   TileLight light_{};
   TilePixels pixels_{};
   Moment moment_;

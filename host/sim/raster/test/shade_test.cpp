@@ -18,6 +18,7 @@ using testing::Each;
 using testing::ElementsAre;
 using testing::Ge;
 using testing::Le;
+using uav::Vec3;
 
 // The middle pixel of a wall at z = 2 that fills the picture; its ray is the axis.
 std::vector<int> wall(SceneParts parts) {
@@ -117,6 +118,31 @@ TEST(Shade, MixesWhatIsTransparentFromBackToFront) {
   EXPECT_THAT(wall(parts), ElementsAre(IsAbout(64), IsAbout(128), IsAbout(64)));
   const Drawing drawing = draw(Scene(parts), small_camera(33, 33));
   EXPECT_THAT(drawing.entity, Each(7U)) << "entities are those of opaque things";
+}
+
+TEST(Shade, ShowsTheNearest32TransparentSurfaces) {
+  SceneParts parts = plain_parts(rectangle(-9, -9, 9, 9, 40), {0.0F, 0.0F, 0.0F});
+  Material pane = parts.materials[0];
+  pane.ambient = {1.0F, 1.0F, 1.0F};
+  pane.alpha = 0.05F;
+  parts.materials.push_back(pane);
+  const auto add = [&](float z) {
+    parts.meshes.push_back(rectangle(-9, -9, 9, 9, z));
+    Instance one;
+    one.mesh = parts.meshes.size() - 1;
+    one.material = 1;
+    parts.instances.push_back(one);
+  };
+  for (int i = 0; i < 32; ++i) add(20.0F - 0.5F * static_cast<float>(i));
+  const std::vector<int> of_32 = wall(parts);
+  EXPECT_NEAR(of_32[0], 255.0 * (1.0 - std::pow(0.95, 32)), 16.0) << "rounded 32 times";
+  add(30.0F);
+  EXPECT_EQ(wall(parts), of_32);
+  pane.ambient = {0.0F, 0.0F, 0.0F};
+  parts.materials.push_back(pane);
+  add(1.0F);
+  parts.instances.back().material = 2;
+  EXPECT_LT(wall(parts)[0], of_32[0]) << "the nearest one is shown";
 }
 
 TEST(Shade, ShowsTheSidesBehindOfWhatIsTransparent) {

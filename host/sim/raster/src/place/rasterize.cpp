@@ -31,25 +31,31 @@ struct Nearest {
   }
 };
 
-// Keeps the farthest triangle that is nearer than `last`. Ids order equally far ones.
+// Keeps the nearest triangle that is before `behind` and behind `last`. Ids order equally far ones.
 struct Next {
+  const TileIds& behind;
   const TileIds& last;
   TileIds& next;
 
-  static M is_before(V depth_a, VU id_a, V depth_b, VU id_b) {
+  static M is_farther(V depth_a, VU id_a, V depth_b, VU id_b) {
     const D d;
     return hn::Or(hn::Lt(depth_a, depth_b),
                   hn::And(hn::Eq(depth_a, depth_b), hn::RebindMask(d, hn::Lt(id_a, id_b))));
+  }
+  static M is_farther(const TileIds& ids, std::size_t at, V depth, VU id) {
+    return is_farther(hn::Load(D(), ids.inverse_depth.data() + at),
+                      hn::Load(DU(), ids.id.data() + at), depth, id);
   }
   void take(std::size_t at, M inside, V inverse_depth, VU id) const {
     const D d;
     const DU du;
     const V last_depth = hn::Load(d, last.inverse_depth.data() + at);
-    const V best_depth = hn::Load(d, next.inverse_depth.data() + at);
     const VU last_id = hn::Load(du, last.id.data() + at);
+    const V best_depth = hn::Load(d, next.inverse_depth.data() + at);
     const VU best_id = hn::Load(du, next.id.data() + at);
-    const M taken = hn::And(inside, hn::And(is_before(last_depth, last_id, inverse_depth, id),
-                                            is_before(inverse_depth, id, best_depth, best_id)));
+    const M is_between = hn::And(is_farther(behind, at, inverse_depth, id),
+                                 is_farther(inverse_depth, id, last_depth, last_id));
+    const M taken = hn::And(inside, hn::And(is_between, is_farther(next, at, inverse_depth, id)));
     hn::Store(hn::IfThenElse(taken, inverse_depth, best_depth), d, next.inverse_depth.data() + at);
     hn::Store(hn::IfThenElse(hn::RebindMask(du, taken), id, best_id), du, next.id.data() + at);
   }
@@ -285,9 +291,9 @@ void rasterize_nearest_on(const Layer& layer, const Lens& lens, const Tile& tile
 }
 
 void rasterize_next_on(const Layer& layer, const Lens& lens, const Tile& tile,
-                       std::span<const std::uint32_t> triangles, const TileIds& last,
-                       TileIds& next) {
-  rasterize_all(layer, lens, tile, triangles, Names::kPlaces, Next{last, next});
+                       std::span<const std::uint32_t> triangles, const TileIds& behind,
+                       const TileIds& last, TileIds& next) {
+  rasterize_all(layer, lens, tile, triangles, Names::kPlaces, Next{behind, last, next});
 }
 
 }  // namespace tether::raster::HWY_NAMESPACE
@@ -310,9 +316,10 @@ void rasterize_nearest(const Layer& layer, const Lens& lens, const Tile& tile,
 }
 
 bool rasterize_next(const Layer& layer, const Lens& lens, const Tile& tile,
-                    std::span<const std::uint32_t> triangles, const TileIds& last, TileIds& next) {
-  clear(0.0, next);
-  HWY_DYNAMIC_DISPATCH(rasterize_next_on)(layer, lens, tile, triangles, last, next);
+                    std::span<const std::uint32_t> triangles, const TileIds& behind,
+                    const TileIds& last, TileIds& next) {
+  clear(std::numeric_limits<double>::infinity(), next);
+  HWY_DYNAMIC_DISPATCH(rasterize_next_on)(layer, lens, tile, triangles, behind, last, next);
   return std::any_of(next.id.begin(), next.id.end(), [](std::uint32_t id) { return id != 0; });
 }
 

@@ -36,10 +36,11 @@ enum class Names {
 void rasterize_nearest(const Layer& layer, const Lens& lens, const Tile& tile,
                        std::span<const std::uint32_t> triangles, Names names, TileIds& ids);
 
-/// Finds, for each pixel, the farthest of `triangles` that is nearer than `last`; of equally far
-/// ones, the first after `last`. Names are places. `next` is set anew. @returns whether there is
-/// any.
+/// Finds, for each pixel, the nearest of `triangles` that is before `behind` and behind `last`; of
+/// equally near ones, the last, but before that of `last`. Names are places. `next` is set anew.
+/// @returns whether there is any.
 bool rasterize_next(const Layer& layer, const Lens& lens, const Tile& tile,
-                    std::span<const std::uint32_t> triangles, const TileIds& last, TileIds& next);
+                    std::span<const std::uint32_t> triangles, const TileIds& behind,
+                    const TileIds& last, TileIds& next);
 
 }  // namespace tether::raster

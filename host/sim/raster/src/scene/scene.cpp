@@ -53,7 +53,9 @@ void check(const Mesh& mesh, const std::string& name) {
                       [](const Mesh::Vertex& v) {
                         return is_near(v.position) && is_near(v.normal) && is_near(v.uv);
                       }),
-          name, "a number of a vertex is not finite, or beyond 1,000,000");
+          name,
+          "a number of a vertex (place, normal or texture coordinate) is not finite, or beyond "
+          "1,000,000");
   for (const auto& triangle : mesh.triangles) {
     require(std::all_of(triangle.begin(), triangle.end(),
                         [&](std::uint32_t i) { return i < mesh.vertices.size(); }),
@@ -89,11 +91,12 @@ void check(const Instance& instance, const std::string& name, const SceneParts& 
 }
 
 void check(const Light& light, const std::string& name) {
-  require(is_near(light.p_WL) && is_near(light.direction_W), name,
-          "its pose is not finite, or beyond 1,000 km");
+  require(
+      is_near(light.p_WL) && is_near(light.direction_W), name,
+      "its place is beyond 1,000 km, or a part of its direction is not finite or beyond 1,000,000");
   require(norm(light.direction_W) > 0.0, name, "it has no direction");
   require(is_light(light.diffuse) && is_light(light.specular), name,
-          "a colour is negative or not finite");
+          "a colour times its intensity is negative, not finite, or beyond 1,000,000");
   const auto is_factor = [](float f) { return f >= 0.0F && f <= 1e6F; };
   require(is_factor(light.attenuation_constant) && is_factor(light.attenuation_linear) &&
               is_factor(light.attenuation_quadratic) &&
