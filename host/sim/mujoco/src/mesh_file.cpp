@@ -36,9 +36,9 @@ constexpr std::size_t kMaxHullCorners = 1'000'000;
   throw Error(ErrorCode::kBadFile, FileLocation{file.string()}, what);
 }
 
-// The normals of a mesh without: at each place, the mean of those of all triangles there.
-// Assimp's own search for places would take hours for a large mesh that lies in a plane.
-std::vector<aiVector3D> smooth_normals(const aiMesh& mesh) {
+// For each vertex, the first one at its place. Assimp's own search for places would take hours for
+// a large mesh that lies in a plane.
+std::vector<unsigned> places(const aiMesh& mesh) {
   const auto position = [&](unsigned i) {
     const aiVector3D& p = mesh.mVertices[i];
     return std::tuple{p.x, p.y, p.z};
@@ -52,6 +52,24 @@ std::vector<aiVector3D> smooth_normals(const aiMesh& mesh) {
     const bool is_new = i == 0 || position(order[i]) != position(order[i - 1]);
     place[order[i]] = is_new ? order[i] : place[order[i - 1]];
   }
+  return place;
+}
+
+bool has_direction(const aiVector3D& v) {
+  const float length2 = v.SquareLength();
+  return length2 > 0.0F && std::isfinite(length2);
+}
+
+// Normals of a length of their own. Without any in the file, each is the mean of those of all
+// triangles at its place; where one has no direction, it is that of its own triangles.
+std::vector<aiVector3D> normals_of(const aiMesh& mesh) {
+  const aiVector3D* const given = mesh.mNormals;
+  if (given != nullptr && std::all_of(given, given + mesh.mNumVertices, has_direction)) {
+    return {given, given + mesh.mNumVertices};
+  }
+  std::vector<unsigned> place(mesh.mNumVertices);
+  std::iota(place.begin(), place.end(), 0U);
+  if (given == nullptr) place = places(mesh);
   std::vector<aiVector3D> sums(mesh.mNumVertices);
   for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
     const aiFace& face = mesh.mFaces[i];
@@ -60,8 +78,11 @@ std::vector<aiVector3D> smooth_normals(const aiMesh& mesh) {
     const aiVector3D normal = ((at(1) - at(0)) ^ (at(2) - at(0))).NormalizeSafe();
     for (unsigned corner = 0; corner < 3; ++corner) sums[place[face.mIndices[corner]]] += normal;
   }
-  for (unsigned i = 0; i < mesh.mNumVertices; ++i) sums[i] = sums[place[i]];
-  return sums;
+  std::vector<aiVector3D> normals;
+  for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
+    normals.push_back(given != nullptr && has_direction(given[i]) ? given[i] : sums[place[i]]);
+  }
+  return normals;
 }
 
 // Collects the triangles of an Assimp scene.
@@ -96,11 +117,10 @@ class MeshCollector {
     aiMatrix3x3 normal_map(transform);
     normal_map.Inverse().Transpose();
     require_finite(mesh);
-    const std::vector<aiVector3D> smooth =
-        mesh.HasNormals() ? std::vector<aiVector3D>() : smooth_normals(mesh);
+    const std::vector<aiVector3D> normals = normals_of(mesh);
     for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
       const aiVector3D p = transform * mesh.mVertices[i];
-      const aiVector3D n = normal_map * (mesh.HasNormals() ? mesh.mNormals[i] : smooth[i]);
+      const aiVector3D n = normal_map * normals[i];
       out_.vertices.push_back(vertex({p.x * s.x, p.y * s.y, p.z * s.z},
                                      {n.x / s.x, n.y / s.y, n.z / s.z}, texture_at(mesh, i)));
     }
@@ -131,13 +151,16 @@ class MeshCollector {
     raster::Mesh::Vertex v;
     copy_to(p, v.position.data());
     const double length = norm(n);
-    const bool has_direction = length > 0.0 && std::isfinite(length);
-    copy_to(has_direction ? (1.0 / length) * n : Vec3{0.0, 0.0, 1.0}, v.normal.data());
+    const bool is_usable = length > 0.0 && std::isfinite(length);
+    copy_to(is_usable ? (1.0 / length) * n : Vec3{0.0, 0.0, 1.0}, v.normal.data());
     v.uv = uv ? std::array<float, 2>{uv->x, uv->y} : projected(p, n);
-    if (!std::all_of(v.position.begin(), v.position.end(), is_near) ||
-        !std::all_of(v.uv.begin(), v.uv.end(), is_near)) {
+    if (!std::all_of(v.position.begin(), v.position.end(), is_near)) {
       fail_mesh(geometry_.file,
                 "has a vertex that is not finite, or farther than 1,000 km from the origin");
+    }
+    if (!std::all_of(v.uv.begin(), v.uv.end(), is_near)) {
+      fail_mesh(geometry_.file,
+                "has a texture coordinate that is not finite, or beyond 1,000,000 repetitions");
     }
     return v;
   }

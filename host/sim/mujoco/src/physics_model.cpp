@@ -2,13 +2,16 @@
 
 #include "triangle_mesh.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <iterator>
 #include <map>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <tether/base/error.h>
 #include <tether/sim/world.h>
 
 namespace tether::sim {
@@ -16,6 +19,26 @@ namespace {
 
 using uav::Pose;
 using uav::Vec3;
+
+// The point for which `measure` gives most.
+template <class Measure>
+Vec3 farthest(const std::vector<Vec3>& points, const Measure& measure) {
+  return *std::max_element(points.begin(), points.end(),
+                           [&](const Vec3& p, const Vec3& q) { return measure(p) < measure(q); });
+}
+
+// Whether points lie in a plane: no convex hull is found for them. @pre There are points.
+bool is_flat(const std::vector<Vec3>& points) {
+  constexpr double kFlat = 1e-6;  // of their length
+  const Vec3 a = points.front();
+  const Vec3 b = farthest(points, [&](const Vec3& p) { return norm(p - a); });
+  const Vec3 c = farthest(points, [&](const Vec3& p) { return norm(cross(b - a, p - a)); });
+  const Vec3 normal = cross(b - a, c - a);
+  const auto volume_m3 = [&](const Vec3& p) { return std::abs(dot(normal, p - a)); };
+  const double length_m = norm(b - a);
+  return norm(normal) <= kFlat * length_m * length_m ||
+         volume_m3(farthest(points, volume_m3)) <= kFlat * length_m * norm(normal);
+}
 
 // MuJoCo's MJCF, written piece by piece. Numbers are written so that they read back exactly.
 class PhysicsXml {
@@ -123,8 +146,15 @@ class PhysicsXml {
     const auto [known, is_new] = meshes_.try_emplace(key_of(mesh), meshes_.size());
     const std::string name = fmt::format("m{}", known->second);
     if (is_new) {
+      const std::vector<Vec3> corners = mesh_files_.corners(mesh);
+      if (is_flat(corners)) {
+        throw Error(ErrorCode::kBadFile, FileLocation{mesh.file.string()},
+                    fmt::format("is flat, so that collision '{}' has no volume: give the mesh a "
+                                "thickness, or use a thin <box>",
+                                collision.name));
+      }
       std::string vertices;
-      for (const Vec3& v : mesh_files_.corners(mesh)) {
+      for (const Vec3& v : corners) {
         fmt::format_to(std::back_inserter(vertices), "{} {} {} ", v.x, v.y, v.z);
       }
       assets_ += fmt::format(R"(<mesh name="{}" vertex="{}"/>)", name, vertices);

@@ -37,6 +37,7 @@ raster::Texture read_png(const std::filesystem::path& file, const std::string& b
     fail_texture(file, std::string("cannot be read as PNG: ") + image.message);
   }
   image.format = PNG_FORMAT_RGBA;
+  image.flags |= PNG_IMAGE_FLAG_16BIT_sRGB;  // as those of 8 bits, if the file does not say
   raster::Texture texture = sized(file, image.width, image.height);
   if (png_image_finish_read(&image, nullptr, texture.rgba.data(), 0, nullptr) == 0) {
     fail_texture(file, std::string("cannot be read as PNG: ") + image.message);

@@ -57,6 +57,20 @@ TEST(MeshFileTest, KeepsTextureCoordinatesWithVDown) {
   }
 }
 
+// Many programs write STL without normals.
+TEST(MeshFileTest, ATriangleWhoseNormalHasNoDirectionGetsItsOwn) {
+  const ScratchFolder scratch;
+  for (const char* const normal : {"0 0 0", "nan 0 0", "inf 0 0"}) {
+    const std::string facet = std::string("solid a\n facet normal ") + normal +
+                              "\n  outer loop\n   vertex 0 0 0\n   vertex 0 1 0\n   vertex 0 0 1\n"
+                              "  endloop\n endfacet\nendsolid a\n";
+    const auto file = scratch.write("a.stl", facet);
+    for (const raster::Mesh::Vertex& v : load_mesh({file, "", {1.0, 1.0, 1.0}}).vertices) {
+      EXPECT_EQ(v.normal, (std::array{1.0F, 0.0F, 0.0F})) << normal;
+    }
+  }
+}
+
 TEST(MeshFileTest, MirroringKeepsTheOutsideOut) {
   MeshGeometry mesh = mesh_file("tetra.stl");
   mesh.scale = {-1.0, 1.0, 1.0};

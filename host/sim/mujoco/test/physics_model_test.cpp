@@ -91,6 +91,14 @@ TEST(PhysicsModelTest, WarnsOfMeshesAndOfPlanesThatMove) {
   EXPECT_THAT(build(world), Pair(ElementsAre(HasSubstr("'shape'")), ElementsAre(mjGEOM_BOX)));
 }
 
+TEST(PhysicsModelTest, RefusesAFlatMeshThatCollides) {
+  World world = test_world();
+  const auto slab = std::filesystem::path(TETHER_TEST_DIR) / "data/slab.obj";
+  world.models[0].links[0].collisions = {collision_of(MeshGeometry{slab, "card", {1.0, 1.0, 1.0}})};
+  const Error error = bad_file_error([&] { build(world); });
+  EXPECT_EQ(error.where().file, slab.string());
+}
+
 TEST(PhysicsModelTest, RefusesAnImpossibleInertia) {
   World world = test_world();
   world.uavs[0].airframe.inertia_kg_m2 = {1.0, 1.0, 3.0};

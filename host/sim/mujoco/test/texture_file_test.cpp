@@ -32,6 +32,11 @@ TEST(TextureFile, APngIsReadFromTheTopDown) {
   EXPECT_EQ(pixel(texture, right, bottom), (std::array{255, 255, 255}));
 }
 
+TEST(TextureFile, SixteenBitsMeanWhatEightDo) {
+  const auto file = std::filesystem::path(TETHER_TEST_DIR) / "data/grey_16_bits.png";
+  EXPECT_EQ(pixel(load_texture(file, no_warnings()), 0, 0), (std::array{128, 128, 128}));
+}
+
 std::string grey_jpeg() {
   const std::vector<unsigned char> grey(16 * 16 * 3, 90);
   unsigned char* bytes = nullptr;
