@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <tether/base/error.h>
 #include <tether/report/pace.h>
 
 namespace tether::report {
