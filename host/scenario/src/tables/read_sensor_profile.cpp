@@ -178,8 +178,7 @@ std::optional<Distortion> read_distortion(const toml::Table& camera) {
 }
 
 void read_camera(const toml::Table& camera, SensorProfile& profile) {
-  constexpr toml::Range kFieldOfView_deg{
-      .min = 0.0, .max = 180.0, .above_min = true, .below_max = true};
+  constexpr toml::Range kFieldOfView_deg{.min = 0.3, .max = 179.9};
   constexpr toml::Range kTime_ms{.min = 0.0, .max = 1000.0};
   profile.size = read_size(camera);
   profile.horizontal_fov_rad =

@@ -69,7 +69,7 @@ TEST_F(ReadSensorProfile, RefusesKeysOfAnotherKind) {
 
 TEST_F(ReadSensorProfile, RefusesImpossibleValues) {
   expect_refused({{"_deg = 90", "_deg = 180", 13, "horizontal_fov_deg"},
-                  {"_deg = 90", "_deg = 0", 13, "horizontal_fov_deg"},
+                  {"_deg = 90", "_deg = 0.2", 13, "horizontal_fov_deg"},
                   {"[320, 200]", "[320]", 12, "size_px"},
                   {"[320, 200]", "[320, 0]", 12, "size_px"},
                   {"[320, 200]", "[4097, 1]", 12, "size_px"},

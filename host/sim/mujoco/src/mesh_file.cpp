@@ -256,7 +256,12 @@ std::unique_ptr<Assimp::Importer> import(const std::filesystem::path& file) {
       reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(), nullptr));
   const aiScene* scene = importer->ReadFile(AI_MEMORYIO_MAGIC_FILENAME + type, 0);
   if (!scene || !scene->mRootNode) {
-    fail_mesh(file, std::string("cannot be read as a mesh: ") + importer->GetErrorString());
+    std::string why = importer->GetErrorString();
+    const std::string given_name = AI_MEMORYIO_MAGIC_FILENAME + type;
+    if (const std::size_t at = why.find(given_name); at != std::string::npos) {
+      why.replace(at, given_name.size(), file.filename().string());
+    }
+    fail_mesh(file, "cannot be read as a mesh: " + why);
   }
   check_faces(*scene, file);
   importer->ApplyPostProcessing(aiProcess_Triangulate | aiProcess_FlipUVs);

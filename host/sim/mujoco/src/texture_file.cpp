@@ -75,6 +75,7 @@ raster::Texture read_jpeg(const std::filesystem::path& file, const std::string& 
 
 raster::Texture load_texture(const std::filesystem::path& file, const WarningSink& warn) {
   const std::string bytes = os::read_file(file, kLargestTexture);
+  if (bytes.empty()) fail_texture(file, "is empty");
   return bytes.starts_with("\xff\xd8") ? read_jpeg(file, bytes, warn) : read_png(file, bytes);
 }
 

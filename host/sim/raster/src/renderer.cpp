@@ -35,9 +35,9 @@ void check(const uav::CameraModel& c) {
   const auto is_size = [](int px) { return px >= 1 && px <= kMaxImageSize_px; };
   require(is_size(c.width_px) && is_size(c.height_px),
           "the image's size is not 1 to 8192 pixels each way");
-  const auto is_focal = [](double f) { return f > 1e-3 && f < 1e6; };
+  const auto is_focal = [](double f) { return f > 1e-4 && f < 1e6; };
   require(is_focal(c.fx_px) && is_focal(c.fy_px),
-          "the camera's focal length is not within 0.001 to 1,000,000 pixels");
+          "the camera's focal length is not within 0.0001 to 1,000,000 pixels");
   require(std::abs(c.cx_px) < 3e4 && std::abs(c.cy_px) < 3e4,
           "the camera's principal point is not within 30,000 pixels");
   const std::array distortion{c.k1, c.k2, c.k3, c.p1, c.p2};

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <map>
-#include <numbers>
 
 namespace tether::sim {
 
@@ -43,8 +42,8 @@ const ValueRule kDistance{[](double v) { return v >= 0.0 && v <= kMaxLength_m; }
 const ValueRule kScale{is_length, "it must be greater than 0 and at most 100000"};
 const ValueRule kMass{[](double v) { return v > 0.0 && v <= kMaxMass_kg; },
                       "it must be greater than 0 and at most 1000000 kg", "kilograms"};
-const ValueRule kFieldOfView{[](double v) { return v > 0.0 && v < std::numbers::pi; },
-                             "it must be greater than 0 and less than pi radians", "radians"};
+const ValueRule kFieldOfView{[](double v) { return v >= 0.005 && v <= 3.14; },
+                             "it must be at least 0.005 and at most 3.14 radians", "radians"};
 const ValueRule kImageEdge{[](double v) { return v >= 1.0 && v <= 4096.0; },
                            "it must be at least 1 and at most 4096 pixels", "pixels"};
 const ValueRule kPose{is_coordinate, "it must be within 100000 m of its frame's origin",

@@ -1,7 +1,6 @@
 #include "files/sdf_rules.h"
 
 #include <limits>
-#include <numbers>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -24,8 +23,9 @@ constexpr Case kCases[] = {
     {"material", "diffuse", 1.0, true},
     {"material", "diffuse", 1.01, false},
     {"camera", "horizontal_fov", 3.14, true},
-    {"camera", "horizontal_fov", std::numbers::pi, false},
-    {"camera", "horizontal_fov", 0.0, false},
+    {"camera", "horizontal_fov", 3.1401, false},
+    {"camera", "horizontal_fov", 0.005, true},
+    {"camera", "horizontal_fov", 0.0049, false},
     {"image", "width", 4096.0, true},
     {"image", "width", 4097.0, false},
     {"image", "height", 0.0, false},
