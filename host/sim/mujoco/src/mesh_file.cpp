@@ -60,13 +60,12 @@ bool has_direction(const aiVector3D& v) {
   return length2 > 0.0F && std::isfinite(length2);
 }
 
-// Normals of a length of their own. Without any in the file, each is the mean of those of all
-// triangles at its place; where one has no direction, it is that of its own triangles.
-std::vector<aiVector3D> normals_of(const aiMesh& mesh) {
+// The normals of the vertices, if those of the file do not do; else none. Without any in the file,
+// each is the mean of those of all triangles at its place; where one has no direction, it is that
+// of its own triangles. Their lengths differ.
+std::vector<aiVector3D> mended_normals(const aiMesh& mesh) {
   const aiVector3D* const given = mesh.mNormals;
-  if (given != nullptr && std::all_of(given, given + mesh.mNumVertices, has_direction)) {
-    return {given, given + mesh.mNumVertices};
-  }
+  if (given != nullptr && std::all_of(given, given + mesh.mNumVertices, has_direction)) return {};
   std::vector<unsigned> place(mesh.mNumVertices);
   std::iota(place.begin(), place.end(), 0U);
   if (given == nullptr) place = places(mesh);
@@ -117,7 +116,8 @@ class MeshCollector {
     aiMatrix3x3 normal_map(transform);
     normal_map.Inverse().Transpose();
     require_finite(mesh);
-    const std::vector<aiVector3D> normals = normals_of(mesh);
+    const std::vector<aiVector3D> mended = mended_normals(mesh);
+    const aiVector3D* const normals = mended.empty() ? mesh.mNormals : mended.data();
     for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
       const aiVector3D p = transform * mesh.mVertices[i];
       const aiVector3D n = normal_map * normals[i];
@@ -254,12 +254,12 @@ std::unique_ptr<Assimp::Importer> import(const std::filesystem::path& file) {
   // but would leave it if it got another now; it does not read again.
   importer->SetIOHandler(new Assimp::MemoryIOSystem(
       reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(), nullptr));
-  const aiScene* scene = importer->ReadFile(AI_MEMORYIO_MAGIC_FILENAME + type, 0);
+  const std::string name_of_bytes = AI_MEMORYIO_MAGIC_FILENAME + type;
+  const aiScene* scene = importer->ReadFile(name_of_bytes, 0);
   if (!scene || !scene->mRootNode) {
     std::string why = importer->GetErrorString();
-    const std::string given_name = AI_MEMORYIO_MAGIC_FILENAME + type;
-    if (const std::size_t at = why.find(given_name); at != std::string::npos) {
-      why.replace(at, given_name.size(), file.filename().string());
+    if (const std::size_t at = why.find(name_of_bytes); at != std::string::npos) {
+      why.replace(at, name_of_bytes.size(), file.filename().string());
     }
     fail_mesh(file, "cannot be read as a mesh: " + why);
   }

@@ -20,24 +20,20 @@ namespace {
 using uav::Pose;
 using uav::Vec3;
 
-// The point for which `measure` gives most.
-template <class Measure>
-Vec3 farthest(const std::vector<Vec3>& points, const Measure& measure) {
-  return *std::max_element(points.begin(), points.end(),
-                           [&](const Vec3& p, const Vec3& q) { return measure(p) < measure(q); });
-}
-
 // Whether points lie in a plane: no convex hull is found for them. @pre There are points.
 bool is_flat(const std::vector<Vec3>& points) {
   constexpr double kFlat = 1e-6;  // of their length
+  const auto most = [&](const auto& measure) {
+    return *std::ranges::max_element(points, {}, measure);
+  };
   const Vec3 a = points.front();
-  const Vec3 b = farthest(points, [&](const Vec3& p) { return norm(p - a); });
-  const Vec3 c = farthest(points, [&](const Vec3& p) { return norm(cross(b - a, p - a)); });
+  const Vec3 b = most([&](const Vec3& p) { return norm(p - a); });
+  const Vec3 c = most([&](const Vec3& p) { return norm(cross(b - a, p - a)); });
   const Vec3 normal = cross(b - a, c - a);
   const auto volume_m3 = [&](const Vec3& p) { return std::abs(dot(normal, p - a)); };
   const double length_m = norm(b - a);
   return norm(normal) <= kFlat * length_m * length_m ||
-         volume_m3(farthest(points, volume_m3)) <= kFlat * length_m * norm(normal);
+         volume_m3(most(volume_m3)) <= kFlat * length_m * norm(normal);
 }
 
 // MuJoCo's MJCF, written piece by piece. Numbers are written so that they read back exactly.

@@ -66,6 +66,12 @@ void check(const View& view, const Scene& scene) {
   }
 }
 
+// Highway's bits for sets of instructions that this processor has and that pictures are compiled
+// for.
+std::int64_t usable_targets() {
+  return hwy::SupportedTargets() & HWY_TARGETS;
+}
+
 void check(const Picture& picture, const uav::CameraModel& c) {
   const std::size_t pixels =
       static_cast<std::size_t>(c.width_px) * static_cast<std::size_t>(c.height_px);
@@ -159,7 +165,7 @@ class Renderer::Work {
 };
 
 void check_processor() {
-  if ((hwy::SupportedTargets() & HWY_TARGETS) == 0) {
+  if (usable_targets() == 0) {
     throw Error(
         ErrorCode::kSetup,
         "this processor lacks the SSSE3 instructions, with which cameras are simulated: use "
@@ -184,8 +190,8 @@ std::size_t Renderer::blind_pixels(const uav::CameraModel& camera) {
 }
 
 std::string Renderer::instructions() {
-  const std::int64_t supported = hwy::SupportedTargets() & HWY_TARGETS;
-  return hwy::TargetName(supported & -supported);
+  const std::int64_t usable = usable_targets();
+  return hwy::TargetName(usable & -usable);
 }
 
 std::map<std::uint32_t, PixelBox> visible_boxes(std::span<const std::uint32_t> entity,

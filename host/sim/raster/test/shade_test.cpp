@@ -30,6 +30,17 @@ auto IsAbout(int byte) {
   return AllOf(Ge(byte - 1), Le(byte + 1));
 }
 
+// Adds a visual with a material of its own.
+void add(SceneParts& parts, const Mesh& mesh, const Material& material, const Vec3& p_WV = {}) {
+  Instance one;
+  one.mesh = parts.meshes.size();
+  one.material = parts.materials.size();
+  one.X_BV.p = p_WV;
+  parts.meshes.push_back(mesh);
+  parts.materials.push_back(material);
+  parts.instances.push_back(one);
+}
+
 SceneParts dark_wall() {
   SceneParts parts = plain_parts(rectangle(-9, -9, 9, 9, 2), {0, 0, 0});
   parts.materials[0].diffuse = {1.0F, 0.5F, 0.25F};
@@ -108,11 +119,7 @@ TEST(Shade, MixesWhatIsTransparentFromBackToFront) {
     Material pane = parts.materials[0];
     pane.ambient = colours[i];
     pane.alpha = 0.5F;
-    parts.meshes.push_back(rectangle(-9, -9, 9, 9, i == 0 ? 2.0F : 3.0F));
-    parts.materials.push_back(pane);
-    Instance one;
-    one.mesh = one.material = i + 1;
-    parts.instances.push_back(one);
+    add(parts, rectangle(-9, -9, 9, 9, i == 0 ? 2.0F : 3.0F), pane);
   }
   // Red, half blue: (½, 0, ½); half green: (¼, ½, ¼). Half of 255 is 128.
   EXPECT_THAT(wall(parts), ElementsAre(IsAbout(64), IsAbout(128), IsAbout(64)));
@@ -125,23 +132,15 @@ TEST(Shade, ShowsTheNearest32TransparentSurfaces) {
   Material pane = parts.materials[0];
   pane.ambient = {1.0F, 1.0F, 1.0F};
   pane.alpha = 0.05F;
-  parts.materials.push_back(pane);
-  const auto add = [&](float z) {
-    parts.meshes.push_back(rectangle(-9, -9, 9, 9, z));
-    Instance one;
-    one.mesh = parts.meshes.size() - 1;
-    one.material = 1;
-    parts.instances.push_back(one);
-  };
-  for (int i = 0; i < 32; ++i) add(20.0F - 0.5F * static_cast<float>(i));
+  for (int i = 0; i < 32; ++i) {
+    add(parts, rectangle(-9, -9, 9, 9, 20.0F - 0.5F * static_cast<float>(i)), pane);
+  }
   const std::vector<int> of_32 = wall(parts);
   EXPECT_NEAR(of_32[0], 255.0 * (1.0 - std::pow(0.95, 32)), 16.0) << "rounded 32 times";
-  add(30.0F);
+  add(parts, rectangle(-9, -9, 9, 9, 30.0F), pane);
   EXPECT_EQ(wall(parts), of_32);
   pane.ambient = {0.0F, 0.0F, 0.0F};
-  parts.materials.push_back(pane);
-  add(1.0F);
-  parts.instances.back().material = 2;
+  add(parts, rectangle(-9, -9, 9, 9, 1.0F), pane);
   EXPECT_LT(wall(parts)[0], of_32[0]) << "the nearest one is shown";
 }
 
@@ -150,12 +149,7 @@ TEST(Shade, ShowsTheSidesBehindOfWhatIsTransparent) {
   Material glass = parts.materials[0];
   glass.ambient = {0.0F, 1.0F, 0.0F};
   glass.alpha = 0.5F;
-  parts.materials.push_back(glass);
-  parts.meshes.push_back(box(1.0F));
-  Instance pane;
-  pane.mesh = pane.material = 1;
-  pane.X_BV.p = {0.0, 0.0, 2.0};
-  parts.instances.push_back(pane);
+  add(parts, box(1.0F), glass, {0.0, 0.0, 2.0});
   EXPECT_THAT(wall(parts), ElementsAre(IsAbout(64), IsAbout(191), 0));
 }
 

@@ -37,27 +37,29 @@ struct Next {
   const TileIds& last;
   TileIds& next;
 
-  static M is_farther(V depth_a, VU id_a, V depth_b, VU id_b) {
-    const D d;
-    return hn::Or(hn::Lt(depth_a, depth_b),
-                  hn::And(hn::Eq(depth_a, depth_b), hn::RebindMask(d, hn::Lt(id_a, id_b))));
+  struct Seen {
+    V inverse_depth;
+    VU id;
+  };
+  static Seen load(const TileIds& ids, std::size_t at) {
+    return {hn::Load(D(), ids.inverse_depth.data() + at), hn::Load(DU(), ids.id.data() + at)};
   }
-  static M is_farther(const TileIds& ids, std::size_t at, V depth, VU id) {
-    return is_farther(hn::Load(D(), ids.inverse_depth.data() + at),
-                      hn::Load(DU(), ids.id.data() + at), depth, id);
+  static M is_farther(const Seen& a, const Seen& b) {
+    return hn::Or(
+        hn::Lt(a.inverse_depth, b.inverse_depth),
+        hn::And(hn::Eq(a.inverse_depth, b.inverse_depth), hn::RebindMask(D(), hn::Lt(a.id, b.id))));
   }
   void take(std::size_t at, M inside, V inverse_depth, VU id) const {
     const D d;
     const DU du;
-    const V last_depth = hn::Load(d, last.inverse_depth.data() + at);
-    const VU last_id = hn::Load(du, last.id.data() + at);
-    const V best_depth = hn::Load(d, next.inverse_depth.data() + at);
-    const VU best_id = hn::Load(du, next.id.data() + at);
-    const M is_between = hn::And(is_farther(behind, at, inverse_depth, id),
-                                 is_farther(inverse_depth, id, last_depth, last_id));
-    const M taken = hn::And(inside, hn::And(is_between, is_farther(next, at, inverse_depth, id)));
-    hn::Store(hn::IfThenElse(taken, inverse_depth, best_depth), d, next.inverse_depth.data() + at);
-    hn::Store(hn::IfThenElse(hn::RebindMask(du, taken), id, best_id), du, next.id.data() + at);
+    const Seen here{inverse_depth, id};
+    const Seen best = load(next, at);
+    const M is_between =
+        hn::And(is_farther(load(behind, at), here), is_farther(here, load(last, at)));
+    const M taken = hn::And(inside, hn::And(is_between, is_farther(best, here)));
+    hn::Store(hn::IfThenElse(taken, inverse_depth, best.inverse_depth), d,
+              next.inverse_depth.data() + at);
+    hn::Store(hn::IfThenElse(hn::RebindMask(du, taken), id, best.id), du, next.id.data() + at);
   }
 };
 
@@ -131,6 +133,7 @@ class GridEdges {
     }
     return false;
   }
+
   // Of one edge: the first row's first vector, and the steps to the next ones.
   struct Walk {
     VI first, column_step, row_step;
