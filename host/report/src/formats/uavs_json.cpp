@@ -4,9 +4,13 @@
 #include <tether/report/uavs_report.h>
 
 namespace tether::report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+}  // namespace
 
 std::string uavs_json(const UavsReport& report) {
-  using Json = nlohmann::ordered_json;
   const sizing::UavQuestion& question = report.question;
   Json json = {
       {"schema", kSizeSchemaVersion},
