@@ -28,7 +28,7 @@ class Size : public testing::Test {
     return {"kind = \"time_required\"", "kind = \"time_required\"\nmax_s = " + max_s};
   }
 
-  const TempFolder folder_;
+  TempFolder folder_;
 };
 
 // With a scripted clock, the limit is reached up to about 2 x slower.

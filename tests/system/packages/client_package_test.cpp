@@ -31,7 +31,7 @@ class ClientPackage : public testing::Test {
     return output_of({"pkg-config", question, "tether-client"}, {{"PKG_CONFIG_PATH", folder}});
   }
 
-  const TempFolder folder_;
+  TempFolder folder_;
   const std::filesystem::path prefix_ = folder_ / "installed";
 };
 

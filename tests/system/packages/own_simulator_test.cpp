@@ -49,7 +49,7 @@ class OwnSimulator : public testing::Test {
   }
 
   static inline std::unique_ptr<TempFolder> built_;
-  const TempFolder folder_;
+  TempFolder folder_;
   const std::filesystem::path example_ = folder_ / "own-simulator";
   const std::string address_ = "unix:" + (folder_ / "yard.sock").string();
   std::unique_ptr<Process> simulator_;
