@@ -14,32 +14,38 @@ constexpr int kMaxLayers = 27;
 constexpr int kMinBandRows = 4;
 constexpr double kBand_px = 0.5;
 
-Vec3 most(const Vec3& a, const Vec3& b) {
-  return {std::max(a.x, std::abs(b.x)), std::max(a.y, std::abs(b.y)), std::max(a.z, std::abs(b.z))};
+double late_s(const View& view, double row) {
+  const int rows = view.camera.height_px;
+  return rows == 1 ? 0.0 : view.readout_s * (rows - 1 - row) / (rows - 1);
 }
 
-// The most that a camera moves along and turns about each of its axes from an instant to the next.
-struct CameraMotion {
+// What a camera does from an instant to the next, along and about its axes.
+struct Step {
   Vec3 shift_m, turn_rad;
-
-  explicit CameraMotion(const View& view) {
-    for (std::size_t i = 0; i + 1 < view.instants.size(); ++i) {
-      const uav::Pose X = inverse(view.instants[i].X_WC) * view.instants[i + 1].X_WC;
-      shift_m = most(shift_m, X.p);
-      turn_rad = most(turn_rad, 2.0 * Vec3{X.q.x, X.q.y, X.q.z});
-    }
-  }
-
-  // How far things at rest move in the picture where rays have slopes up to `x` and `y` and things
-  // are no nearer than 1/inverse_depth.
-  double px(const uav::CameraModel& camera, double x, double y, double inverse_depth) const {
-    const double along_x = (shift_m.x + x * shift_m.z) * inverse_depth + turn_rad.x * x * y +
-                           turn_rad.y * (1.0 + x * x) + turn_rad.z * y;
-    const double along_y = (shift_m.y + y * shift_m.z) * inverse_depth + turn_rad.y * x * y +
-                           turn_rad.x * (1.0 + y * y) + turn_rad.z * x;
-    return std::hypot(camera.fx_px * along_x, camera.fy_px * along_y);
-  }
 };
+
+// The steps in a few parts of the time in which some rows are exposed.
+std::vector<Step> steps_of_rows(const View& view, int first_row, int last_row) {
+  constexpr std::size_t kParts = 4;
+  const std::size_t last = view.instants.size() - 1;
+  const auto at = [&](double before_end_s) {
+    return std::max(0.0, static_cast<double>(last) - before_end_s / view.spacing_s);
+  };
+  const auto begin =
+      std::min(last - 1, static_cast<std::size_t>(at(late_s(view, first_row) + view.exposure_s)));
+  const auto end =
+      std::max(begin + 1, static_cast<std::size_t>(std::ceil(at(late_s(view, last_row)))));
+  const std::size_t part = (end - begin + kParts - 1) / kParts;
+  std::vector<Step> steps;
+  for (std::size_t from = begin; from < end; from += part) {
+    const std::size_t to = std::min(end, from + part);
+    const uav::Pose X = inverse(view.instants[from].X_WC) * view.instants[to].X_WC;
+    const double share = 1.0 / static_cast<double>(to - from);
+    const double twice = X.q.w < 0.0 ? -2.0 : 2.0;
+    steps.push_back({share * X.p, share * twice * Vec3{X.q.x, X.q.y, X.q.z}});
+  }
+  return steps;
+}
 
 // The pixels in which a sphere in C may be seen.
 PixelRect pixels_of(const Vec3& p, double radius_m, const View& view, const Lens& lens) {
@@ -104,9 +110,10 @@ std::vector<float> nearest_by_tile(const TileGrid& grid, const Lens& lens, const
       for (const auto* const list : {&layer.opaque[i], &layer.transparent[i]}) {
         for (const std::uint32_t triangle : *list) {
           const Coverage& coverage = layer.coverage[triangle];
+          if (coverage.depth.high <= own) continue;
           const FixedRect part = lens.samples_of(common_part(tile, coverage.pixels));
-          if (reach(coverage, part, 7U).is_none) continue;
-          own = std::max(own, most_inverse_depth(coverage.depth, part));
+          const float here = most_inverse_depth(coverage.depth, part);
+          if (here > own && !reach(coverage, part, 7U).is_none) own = here;
         }
       }
       grid.for_each_near(tile,
@@ -116,37 +123,67 @@ std::vector<float> nearest_by_tile(const TileGrid& grid, const Lens& lens, const
   return nearest;
 }
 
-// The steepest rays of some pixels.
+// The slopes of the rays of some pixels.
 struct Slopes {
-  double x, y;
+  double x_low, x_high, y_low, y_high;
 };
-Slopes steepest(const Lens& lens, const PixelRect& pixels) {
+Slopes slopes_of(const Lens& lens, const PixelRect& pixels) {
   const FixedRect seen = lens.seen_part(lens.samples_of(pixels));
   const uav::CameraModel& c = lens.camera();
-  const auto steeper = [](std::int32_t low, std::int32_t high, double focal_px, double centre_px) {
-    const auto of = [&](std::int32_t at) {
-      return std::abs(static_cast<double>(at) / kSubpixels - centre_px) / focal_px;
-    };
-    return std::max(of(low), of(high));
+  const auto slope = [](std::int32_t at, double focal_px, double centre_px) {
+    return (static_cast<double>(at) / kSubpixels - centre_px) / focal_px;
   };
-  return {steeper(seen.x_low, seen.x_high, c.fx_px, c.cx_px),
-          steeper(seen.y_low, seen.y_high, c.fy_px, c.cy_px)};
+  return {slope(seen.x_low, c.fx_px, c.cx_px), slope(seen.x_high, c.fx_px, c.cx_px),
+          slope(seen.y_low, c.fy_px, c.cy_px), slope(seen.y_high, c.fy_px, c.cy_px)};
 }
 
-// How far things move in each tile during the view, at most [px].
+// How far things at rest that are no nearer than 1/inverse_depth move in a step, at most [px].
+// Squares of slopes matter between the corners too.
+double flow_px(const uav::CameraModel& camera, const Slopes& slopes, double inverse_depth,
+               const Step& step) {
+  const Vec3& shift = step.shift_m;
+  const Vec3& turn = step.turn_rad;
+  const auto square_of_half = [](double low, double high) {
+    return 0.25 * (high - low) * (high - low);
+  };
+  const double more_x = std::abs(turn.y) * square_of_half(slopes.x_low, slopes.x_high);
+  const double more_y = std::abs(turn.x) * square_of_half(slopes.y_low, slopes.y_high);
+  const auto most = [&](double of_turn, double of_shift) {
+    return std::max(std::abs(of_turn), std::abs(of_turn + of_shift * inverse_depth));
+  };
+  double most_px2 = 0.0;
+  for (const double x : {slopes.x_low, slopes.x_high}) {
+    for (const double y : {slopes.y_low, slopes.y_high}) {
+      const double along_x =
+          most(turn.x * x * y - turn.y * (1.0 + x * x) + turn.z * y, shift.z * x - shift.x);
+      const double along_y =
+          most(turn.x * (1.0 + y * y) - turn.y * x * y - turn.z * x, shift.z * y - shift.y);
+      const double x_px = camera.fx_px * (along_x + more_x);
+      const double y_px = camera.fy_px * (along_y + more_y);
+      most_px2 = std::max(most_px2, x_px * x_px + y_px * y_px);
+    }
+  }
+  return std::sqrt(most_px2);
+}
+
+// How far things move in each tile during the view, were they as fast throughout as during its own
+// exposure, at most [px].
 std::vector<double> motion_by_tile(const View& view, const Lens& lens,
                                    std::span<const double> body_radii_m, const Layer& middle) {
   const TileGrid grid(view.camera);
-  const CameraMotion motion(view);
   const double steps = (view.exposure_s + view.readout_s) / view.spacing_s;
   const std::vector<float> nearest = nearest_by_tile(grid, lens, middle);
   std::vector<double> moved_px(grid.size());
   for (int row = 0; row < grid.down; ++row) {
+    const PixelRect left = grid.pixels(0, row);
+    const std::vector<Step> of_rows = steps_of_rows(view, left.y_low, left.y_high);
     for (int column = 0; column < grid.across; ++column) {
-      const Slopes slopes = steepest(lens, grid.pixels(column, row));
+      const Slopes slopes = slopes_of(lens, grid.pixels(column, row));
       const std::size_t i = grid.place(column, row);
-      moved_px[i] =
-          steps * motion.px(view.camera, slopes.x, slopes.y, static_cast<double>(nearest[i]));
+      for (const Step& step : of_rows) {
+        const double px = flow_px(view.camera, slopes, static_cast<double>(nearest[i]), step);
+        moved_px[i] = std::max(moved_px[i], steps * px);
+      }
     }
   }
   const Instant& end = view.instants.back();
@@ -211,9 +248,7 @@ int Sampling::most_layers() const {
 }
 
 double before_end_s(const View& view, double row, int layer, int layers) {
-  const int rows = view.camera.height_px;
-  const double late_s = rows == 1 ? 0.0 : view.readout_s * (rows - 1 - row) / (rows - 1);
-  return late_s + view.exposure_s * (1.0 - (layer + 0.5) / layers);
+  return late_s(view, row) + view.exposure_s * (1.0 - (layer + 0.5) / layers);
 }
 
 }  // namespace tether::raster

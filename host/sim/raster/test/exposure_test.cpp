@@ -242,7 +242,9 @@ TEST(Exposure, ExpectsNoLessMotionThanThereIs) {
   Renderer renderer(scene);
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     const auto some = [&](std::uint64_t i) { return drawn(seed, i, -0.05, 0.05); };
-    const Shift shift({some(0), some(1), some(2)}, 0.2 * some(3), 0.01, 0.0);
+    Shift shift({some(0), some(1), some(2)}, 0.2 * some(3), 0.01, 0.0);
+    uav::Quat& q = shift.instants[0].X_WC.q;
+    if (seed % 3 == 0) q = {-q.w, -q.x, -q.y, -q.z};  // the same attitude
     View view = shift.view;
     if (seed % 2 == 1) view.camera = bent_camera(320, 240);
     const Sampling sampling = sampling_of(scene, view);
@@ -274,6 +276,36 @@ TEST(Exposure, ExpectsLittleMotionWhereTheCameraFliesTo) {
   const Sampling sampling = sampling_of(scene, shift.view);
   EXPECT_LT(sampling.exposed_px(tile_at(320, 240)), 1.2);
   EXPECT_GT(sampling.exposed_px(tile_at(0, 240)), 7.5);
+}
+
+// A wall 2 m ahead stays where it is in the picture if a camera turns as much as it flies past.
+// Farther things would move as it turns, but not as far as by both.
+TEST(Exposure, ExpectsNoSumOfMotionsThatCancel) {
+  const Scene scene(plain_parts(rectangle(-99, -99, 99, 99, 2), {1, 1, 1}));
+  constexpr double kShift_m = 0.05;
+  const auto expected_px = [&](double turn_rad) {
+    const Shift shift({kShift_m, 0.0, 0.0}, turn_rad, 0.01, 0.0);
+    return sampling_of(scene, shift.view).exposed_px(tile_at(320, 240));
+  };
+  const double alone_px = 400.0 * kShift_m / 2.0;
+  EXPECT_NEAR(expected_px(0.5 * kShift_m), 2.0 * alone_px, 0.05 * alone_px);
+  EXPECT_NEAR(expected_px(-0.5 * kShift_m), alone_px, 0.05 * alone_px);
+}
+
+TEST(Exposure, ExpectsInEachTileTheMotionOfItsOwnTime) {
+  const Scene scene(plain_parts(rectangle(-99, -99, 99, 99, 2), {1, 1, 1}));
+  View view = Shift({}, 0.0, 0.002, 0.02).view;
+  std::vector<Instant> instants(23);  // at rest until the middle, then faster and faster
+  for (std::size_t i = 11; i < instants.size(); ++i) {
+    const auto steps = static_cast<double>(i - 10);
+    instants[i].X_WC.p.x = 0.001 * steps * steps;
+  }
+  view.instants = instants;
+  view.spacing_s = 0.001;
+  const Sampling sampling = sampling_of(scene, view);
+  EXPECT_EQ(sampling.exposed_px(tile_at(320, 20)), 0.0);
+  EXPECT_EQ(sampling.layers(tile_at(320, 20)), 1);
+  EXPECT_LT(sampling.exposed_px(tile_at(320, 300)), 0.5 * sampling.exposed_px(tile_at(320, 470)));
 }
 
 TEST(Exposure, ExpectsTheMotionOfABodyWhereItMayBe) {
