@@ -28,9 +28,7 @@ struct Step {
 std::vector<Step> steps_of_rows(const View& view, int first_row, int last_row) {
   constexpr std::size_t kParts = 4;
   const std::size_t last = view.instants.size() - 1;
-  const auto at = [&](double before_end_s) {
-    return std::max(0.0, static_cast<double>(last) - before_end_s / view.spacing_s);
-  };
+  const auto at = [&](double before_end_s) { return place_among_instants(view, before_end_s); };
   const auto begin =
       std::min(last - 1, static_cast<std::size_t>(at(late_s(view, first_row) + view.exposure_s)));
   const auto end =

@@ -36,10 +36,15 @@ double throughout(const View& view, const OfStep& of_step) {
 
 }  // namespace
 
+double place_among_instants(const View& view, double before_end_s) {
+  const auto last = static_cast<double>(view.instants.size() - 1);
+  const double back = view.spacing_s > 0.0 ? before_end_s / view.spacing_s : 0.0;
+  return std::clamp(last - back, 0.0, last);
+}
+
 void interpolate(const View& view, double before_end_s, Moment& moment) {
   const std::size_t last = view.instants.size() - 1;
-  const double back = view.spacing_s > 0.0 ? before_end_s / view.spacing_s : 0.0;
-  const double at = std::clamp(static_cast<double>(last) - back, 0.0, static_cast<double>(last));
+  const double at = place_among_instants(view, before_end_s);
   const auto low = static_cast<std::size_t>(at);
   const double share = at - static_cast<double>(low);
   const Instant& a = view.instants[low];

@@ -58,6 +58,10 @@ struct Moment {
   std::vector<uav::Pose> X_WB;
 };
 
+/// Where among the instants, counted from 0, so long before the end of the view is; before the
+/// first one, or after the last: there.
+double place_among_instants(const View& view, double before_end_s);
+
 /// So long before the end of the view; outside of its instants, at the first or the last.
 void interpolate(const View& view, double before_end_s, Moment& moment);
 
