@@ -101,48 +101,58 @@ class Depth {
                    hn::Mul(hn::Set(d, plane_.plane[2]), hn::Sub(y, hn::Set(d, plane_.y_ref))));
   }
 
-  V at(V row, V x) const {
-    const V plane = hn::Add(row, hn::Mul(slope_, hn::Sub(x, x_ref_)));
-    return hn::Min(hn::Max(plane, low_), high_);
-  }
+  V along_x(V x) const { return hn::Mul(slope_, hn::Sub(x, x_ref_)); }
+
+  V at(V row, V along_x) const { return hn::Min(hn::Max(hn::Add(row, along_x), low_), high_); }
 
  private:
   const DepthPlane& plane_;
   V x_ref_, slope_, low_, high_;
 };
 
-// The three edges of a triangle over samples on a grid. Of E = a·x + b·y + c, whose steps from
-// pixel to pixel are multiples of kSubpixels, E ≥ 0 just where E div kSubpixels is, which fits
+// The three edges of a triangle over a tile's samples on a grid. Of E = a·x + b·y + c, whose steps
+// from pixel to pixel are multiples of kSubpixels, E ≥ 0 just where E div kSubpixels is, which fits
 // into 32 bits: an edge that is beyond ±kFar does not get back to 0 within a tile.
 class GridEdges {
  public:
-  GridEdges(const Coverage& t, int x, int y) : t_(t) {
-    for (std::size_t i = 0; i < 3; ++i) {
+  // Of the tile's pixels from (x, y) on, so many columns and rows.
+  GridEdges(const Coverage& t, int x, int y, int columns, int rows) : t_(t) {
+    for (std::size_t i = 0; i < 3 && !misses_; ++i) {
       const std::int64_t e =
           t.c[i] + kSubpixels * (std::int64_t{t.a[i]} * x + std::int64_t{t.b[i]} * y);
       at_[i] = static_cast<std::int32_t>(std::clamp(e >> kShift, -kFar, kFar));
+      rows_per_step_[i] = -1.0F / static_cast<float>(t.b[i]);
+      misses_ = at_[i] + std::max(0, t.a[i] * (columns - 1)) + std::max(0, t.b[i] * (rows - 1)) < 0;
     }
   }
 
-  // Whether no pixel of some columns and rows is inside, because one edge is beyond them.
-  bool misses(int columns, int rows) const {
-    for (std::size_t i = 0; i < 3; ++i) {
-      const std::int32_t most =
-          at_[i] + std::max(0, t_.a[i] * (columns - 1)) + std::max(0, t_.b[i] * (rows - 1));
-      if (most < 0) return true;
-    }
-    return false;
-  }
+  // Whether no pixel is inside, because one edge is beyond them all.
+  bool misses() const { return misses_; }
 
-  // Of one edge: the first row's first vector, and the steps to the next ones.
-  struct Walk {
-    VI first, column_step, row_step;
+  struct Rows {
+    int first, last;
   };
-  Walk walk(std::size_t i) const {
-    const DI di;
-    const VI lane = hn::Iota(di, 0);
-    return {hn::Add(hn::Set(di, at_[i]), hn::Mul(lane, hn::Set(di, t_.a[i]))),
-            hn::Set(di, t_.a[i] * static_cast<int>(hn::Lanes(di))), hn::Set(di, t_.b[i])};
+  // The rows in which a pixel of a vector may be inside, and hardly more: the edge that most of
+  // them are beyond is beyond the others.
+  Rows rows(int column, int count) const {
+    constexpr float kSlack = 0.01F;
+    float low = 0.0F;
+    float high = static_cast<float>(count - 1);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::int32_t a = t_.a[i];
+      const std::int32_t most =
+          at_[i] + a * column + std::max(0, a * (static_cast<int>(lanes()) - 1));
+      const float zero = static_cast<float>(most) * rows_per_step_[i];
+      if (t_.b[i] > 0) low = std::max(low, zero);
+      if (t_.b[i] < 0) high = std::min(high, zero);
+    }
+    return {static_cast<int>(low + (1.0F - kSlack)), static_cast<int>(high + kSlack)};
+  }
+
+  // One edge at a vector's pixels.
+  VI at(std::size_t i, int column, int row) const {
+    const VI lane = hn::Iota(DI(), 0);
+    return hn::Add(whole(at_[i] + t_.a[i] * column + t_.b[i] * row), hn::Mul(lane, whole(t_.a[i])));
   }
 
  private:
@@ -151,48 +161,40 @@ class GridEdges {
   static_assert(kSubpixels == 1 << kShift);
 
   const Coverage& t_;
-  std::array<std::int32_t, 3> at_{};
+  std::array<std::int32_t, 3> at_;
+  std::array<float, 3> rows_per_step_;  // of an edge by −1; of no use where b = 0
+  bool misses_ = false;
 };
 
-// Vectors without a pixel of the triangle are not left out: guessing which ones that are costs
-// more.
 template <class Target>
 void rasterize_on_grid(const Coverage& t, std::uint32_t id, const Tile& tile,
                        const Target& target) {
   const Part part(tile, t.pixels);
   const int left = tile.x + part.first_column;
   const int top = tile.y + part.first_row;
-  const GridEdges edges(t, left, top);
-  if (edges.misses(part.columns, part.rows)) return;
+  const GridEdges edges(t, left, top, part.columns, part.rows);
+  if (edges.misses()) return;
   const Depth depth(t.depth);
   const VU ids = hn::Set(DU(), id);
-  const std::size_t vectors = (static_cast<std::size_t>(part.columns) + lanes() - 1) / lanes();
-  const V first_x = Add(lane_numbers(), set(static_cast<float>(left)));
-  const V x_step = set(static_cast<float>(lanes()));
-  const GridEdges::Walk e0 = edges.walk(0);
-  const GridEdges::Walk e1 = edges.walk(1);
-  const GridEdges::Walk e2 = edges.walk(2);
-  VI row0 = e0.first;
-  VI row1 = e1.first;
-  VI row2 = e2.first;
-  for (int row = 0; row < part.rows; ++row) {
-    const V depth_row = depth.row(static_cast<float>(top + row));
-    std::size_t at = place_of(part.first_column, part.first_row + row);
-    V x = first_x;
-    VI at0 = row0;
-    VI at1 = row1;
-    VI at2 = row2;
-    for (std::size_t i = 0; i < vectors; ++i, at += lanes()) {
+  const VI step0 = whole(t.b[0]);
+  const VI step1 = whole(t.b[1]);
+  const VI step2 = whole(t.b[2]);
+  for (int column = 0; column < part.columns; column += static_cast<int>(lanes())) {
+    const GridEdges::Rows rows = edges.rows(column, part.rows);
+    if (rows.first > rows.last) continue;
+    const V depth_x = depth.along_x(Add(lane_numbers(), set(static_cast<float>(left + column))));
+    VI at0 = edges.at(0, column, rows.first);
+    VI at1 = edges.at(1, column, rows.first);
+    VI at2 = edges.at(2, column, rows.first);
+    for (int row = rows.first; row <= rows.last; ++row) {
       const auto inside = hn::Gt(hn::Or(hn::Or(at0, at1), at2), whole(-1));
-      target.take(at, float_mask(inside), depth.at(depth_row, x), ids);
-      x = Add(x, x_step);
-      at0 = Add(at0, e0.column_step);
-      at1 = Add(at1, e1.column_step);
-      at2 = Add(at2, e2.column_step);
+      const V depth_y = depth.row(static_cast<float>(top + row));
+      target.take(place_of(part.first_column + column, part.first_row + row), float_mask(inside),
+                  depth.at(depth_y, depth_x), ids);
+      at0 = Add(at0, step0);
+      at1 = Add(at1, step1);
+      at2 = Add(at2, step2);
     }
-    row0 = Add(row0, e0.row_step);
-    row1 = Add(row1, e1.row_step);
-    row2 = Add(row2, e2.row_step);
   }
 }
 
@@ -258,7 +260,7 @@ void rasterize_samples(const Coverage& t, std::uint32_t id, const Tile& tile, co
       if (hn::AllFalse(d, inside)) continue;
       const V depth_row = depth.row(in_pixels(y + c));
       target.take(place_of(part.first_column + c, row), inside,
-                  depth.at(depth_row, in_pixels(x + c)), ids);
+                  depth.at(depth_row, depth.along_x(in_pixels(x + c))), ids);
     }
   }
 }
