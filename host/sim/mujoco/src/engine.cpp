@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
-#include <cstring>
+#include <limits>
 
 #include <sys/mman.h>
 
@@ -26,32 +26,41 @@ std::string one_line(std::string text) {
 // The simulator checks the counters of warnings in mjData instead.
 void ignore_engine_warning(const char* /*message*/) {}
 
+// Whether this thread was refused memory since it compiles a model: the compiler's message has no
+// type.
+thread_local bool out_of_memory = false;
+
 // The engine clears its scratch memory (some 200 MB) once. By pages of 4 KiB, that takes a tenth of
 // a second of each trial.
 void* allocate_in_huge_pages(std::size_t size) {
   constexpr std::size_t kHugePage = std::size_t{2} << 20, kAligned = 64;
   const bool is_huge = size >= kHugePage;
   void* memory = nullptr;
-  if (posix_memalign(&memory, is_huge ? kHugePage : kAligned, size) != 0) return nullptr;
+  if (posix_memalign(&memory, is_huge ? kHugePage : kAligned, size) != 0) {
+    out_of_memory = true;
+    return nullptr;
+  }
   if (is_huge) madvise(memory, size, MADV_HUGEPAGE);  // advice: without it, it is slower
   return memory;
 }
 
-// The engine's file system of fixed-size tables (2 MB).
-class MemoryFiles {
+// The engine's file system of fixed-size tables (2 MB), with one file.
+class MemoryFile {
  public:
-  MemoryFiles() { mj_defaultVFS(vfs_.get()); }
-  ~MemoryFiles() { mj_deleteVFS(vfs_.get()); }
-  MemoryFiles(const MemoryFiles&) = delete;
-  MemoryFiles& operator=(const MemoryFiles&) = delete;
-
-  void add(const std::string& name, const char* bytes, std::size_t size) {
-    if (mj_makeEmptyFileVFS(vfs_.get(), name.c_str(), static_cast<int>(size)) != 0) {
-      throw Error(ErrorCode::kSetup, "MuJoCo: too many files in the model (at " + name + ")");
+  MemoryFile(const char* name, const std::string& text) {
+    if (text.size() > std::numeric_limits<int>::max()) {
+      throw Error(ErrorCode::kBadFile,
+                  "the meshes of its collisions have more vertices than MuJoCo takes: use simpler "
+                  "meshes");
     }
-    const int slot = mj_findFileVFS(vfs_.get(), name.c_str());
-    std::memcpy(vfs_->filedata[slot], bytes, size);
+    mj_defaultVFS(vfs_.get());
+    mj_makeEmptyFileVFS(vfs_.get(), name, static_cast<int>(text.size()));
+    std::ranges::copy(text, static_cast<char*>(vfs_->filedata[mj_findFileVFS(vfs_.get(), name)]));
   }
+  ~MemoryFile() { mj_deleteVFS(vfs_.get()); }
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+
   const mjVFS* get() const { return vfs_.get(); }
 
  private:
@@ -67,19 +76,19 @@ void install_engine_handlers() {
   mju_user_free = std::free;
 }
 
-ModelPtr compile_model(const std::string& xml, const std::vector<ModelFile>& files) {
+ModelPtr compile_model(const std::string& xml) {
   install_engine_handlers();
   install_box_contacts();
   constexpr const char* kName = "world.xml";
-  MemoryFiles memory;
-  memory.add(kName, xml.data(), xml.size());
-  for (const ModelFile& file : files) {
-    memory.add(file.name, file.bytes.data(), file.bytes.size());
-  }
+  const MemoryFile memory(kName, xml);
+  out_of_memory = false;
   std::array<char, 1000> message{};
   ModelPtr model(mj_loadXML(kName, memory.get(), message.data(), static_cast<int>(message.size())));
+  if (!model && out_of_memory) {
+    throw Error(ErrorCode::kSetup, "MuJoCo: not enough memory for the world's model");
+  }
   if (!model) {
-    throw Error(ErrorCode::kSetup, "MuJoCo cannot use the world: " + one_line(message.data()));
+    throw Error(ErrorCode::kBadFile, "MuJoCo cannot use the world: " + one_line(message.data()));
   }
   return model;
 }

@@ -2,7 +2,6 @@
 
 #include <memory>
 #include <string>
-#include <vector>
 
 #include <mujoco/mujoco.h>
 
@@ -18,15 +17,9 @@ struct DataDeleter {
 using ModelPtr = std::unique_ptr<mjModel, ModelDeleter>;
 using DataPtr = std::unique_ptr<mjData, DataDeleter>;
 
-/// A file that a model's XML refers to by `name`.
-struct ModelFile {
-  std::string name;
-  std::string bytes;
-};
-
-/// Compiles MJCF text and its files in memory; nothing is written to disk.
-/// @throws Error(kSetup) with the compiler's own message.
-ModelPtr compile_model(const std::string& xml, const std::vector<ModelFile>& files);
+/// Compiles MJCF text in memory; nothing is written to disk.
+/// @throws Error(kBadFile) with the compiler's own message; Error(kSetup) when memory runs out.
+ModelPtr compile_model(const std::string& xml);
 /// @throws Error(kSetup) when memory runs out.
 DataPtr make_data(const mjModel& model);
 

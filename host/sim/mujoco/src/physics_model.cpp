@@ -188,7 +188,7 @@ ModelPtr make_physics_model(const World& world, const WarningSink& warn, const M
     xml.add_collisions(*body.link, body.X_WB, true);
   }
   for (const MovingBody& body : moving_bodies(world)) xml.add_moving(body);
-  return compile_model(xml.text(world), {});
+  return compile_model(xml.text(world));
 }
 
 }  // namespace tether::sim

@@ -102,7 +102,7 @@ TEST(PhysicsModelTest, RefusesAFlatMeshThatCollides) {
 TEST(PhysicsModelTest, RefusesAnImpossibleInertia) {
   World world = test_world();
   world.uavs[0].airframe.inertia_kg_m2 = {1.0, 1.0, 3.0};
-  thrown_error(ErrorCode::kSetup, [&] { make_physics_model(world, no_warnings()); });
+  thrown_error(ErrorCode::kBadFile, [&] { make_physics_model(world, no_warnings()); });
 }
 
 }  // namespace
