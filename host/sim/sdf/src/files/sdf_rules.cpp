@@ -29,14 +29,27 @@ constexpr const char* kNotNegativeText = "it must not be negative";
 
 const ValueRule kPositive{is_positive, kPositiveText};
 const ValueRule kSeconds{is_positive, kPositiveText, "seconds"};
-const ValueRule kPixels{is_positive, kPositiveText, "pixels"};
+const ValueRule kFocalLength{[](double v) { return v > 1e-4 && v < 1e6; },
+                             "it must be greater than 0.0001 and less than 1000000 pixels",
+                             "pixels"};
+const ValueRule kPrincipalPoint{[](double v) { return std::abs(v) < 3e4; },
+                                "it must be within 30000 pixels of the image's corner", "pixels"};
+const ValueRule kDistortion{[](double v) { return std::abs(v) < 1e3; },
+                            "it must be greater than -1000 and less than 1000"};
+const ValueRule kIntensity{[](double v) { return v >= 0.0 && v <= 1e6; },
+                           "it must be at least 0 and at most 1000000"};
+const ValueRule kConeAngle{[](double v) { return v >= 0.0 && v <= 3.1416; },
+                           "it must be at least 0 and at most 3.1416: a cone is no wider than a "
+                           "half space",
+                           "radians"};
 const ValueRule kInertia{is_positive, kPositiveText, "kg m^2"};
 const ValueRule kNotNegative{is_not_negative, kNotNegativeText};
-const ValueRule kAngle{is_not_negative, kNotNegativeText, "radians"};
 const ValueRule kRate{is_not_negative, kNotNegativeText, "hertz"};
 const ValueRule kFraction{[](double v) { return v >= 0.0 && v <= 1.0; },
                           "it must be between 0 and 1"};
 const ValueRule kLength{is_length, "it must be greater than 0 and at most 100000 m", "metres"};
+const ValueRule kNearPlane{[](double v) { return v >= 1e-4 && v <= kMaxLength_m; },
+                           "it must be at least 0.0001 and at most 100000 m", "metres"};
 const ValueRule kDistance{[](double v) { return v >= 0.0 && v <= kMaxLength_m; },
                           "it must be at least 0 and at most 100000 m", "metres"};
 const ValueRule kScale{is_length, "it must be greater than 0 and at most 100000"};
@@ -76,22 +89,29 @@ const std::map<std::string, ValueRule, std::less<>> kRules = {
     {"material/emissive", kFraction},
     {"light/diffuse", kFraction},
     {"light/specular", kFraction},
-    {"light/intensity", kNotNegative},
+    {"light/intensity", kIntensity},
     {"attenuation/constant", kNotNegative},
     {"attenuation/linear", kNotNegative},
     {"attenuation/quadratic", kNotNegative},
     {"attenuation/range", kDistance},
-    {"spot/inner_angle", kAngle},
-    {"spot/outer_angle", kAngle},
+    {"spot/inner_angle", kConeAngle},
+    {"spot/outer_angle", kConeAngle},
     {"spot/falloff", kNotNegative},
     {"sensor/update_rate", kRate},
     {"camera/horizontal_fov", kFieldOfView},
     {"image/width", kImageEdge},
     {"image/height", kImageEdge},
-    {"clip/near", kLength},
+    {"clip/near", kNearPlane},
     {"clip/far", kLength},
-    {"intrinsics/fx", kPixels},
-    {"intrinsics/fy", kPixels},
+    {"intrinsics/fx", kFocalLength},
+    {"intrinsics/fy", kFocalLength},
+    {"intrinsics/cx", kPrincipalPoint},
+    {"intrinsics/cy", kPrincipalPoint},
+    {"distortion/k1", kDistortion},
+    {"distortion/k2", kDistortion},
+    {"distortion/k3", kDistortion},
+    {"distortion/p1", kDistortion},
+    {"distortion/p2", kDistortion},
     {"noise/stddev", kNotNegative},
     {"noise/bias_stddev", kNotNegative},
     {"noise/dynamic_bias_stddev", kNotNegative},

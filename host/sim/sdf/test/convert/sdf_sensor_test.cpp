@@ -245,6 +245,8 @@ TEST_F(BadSensors, AreRefused) {
       {"<width>320", "<width>4097", 24, "<width> of sensor 'eye'"},
       {"<height>240", "<height>-240", 24, "<height> of sensor 'eye'"},
       {"<near>0.1", "<near>30", 24, "<clip> of sensor 'eye'"},
+      {"<near>0.1", "<near>0.00001", 24, "<near> of sensor 'eye'"},
+      {"<k1>-0.2", "<k1>-2000", 25, "<k1> of sensor 'eye'"},
       {"<min>0.1", "<min>6", 29, "<range> of sensor 'nose'"},
       {"<stddev>0.25", "<stddev>-0.25", 30, "<stddev> of sensor 'nose'"},
       {"<update_rate>25", "<update_rate>-25", 22, "<update_rate> of sensor 'eye'"},
