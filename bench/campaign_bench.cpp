@@ -101,8 +101,7 @@ scenario::Campaign campaign_of(int trials) {
 }
 
 runner::BackEnd no_back_end(const std::string&) {
-  return {.require_readable = [](const sim::World&) {},
-          .start = {},
+  return {.prepare = [](const sim::World&, const sim::WarningSink&) { return nullptr; },
           .files = [] { return std::vector<std::filesystem::path>{}; }};
 }
 

@@ -20,6 +20,7 @@ namespace tether::app {
 namespace {
 
 using runner::SimulatorSetup;
+using runner::StartSimulator;
 
 constexpr Duration kAttachLimit = std::chrono::seconds(5);
 
@@ -67,46 +68,42 @@ std::unique_ptr<sim::Simulator> attach(const sim::protocol::Endpoint& endpoint, 
       setup.warn);
 }
 
-/// A simulator without processes and files; `make` returns it.
-template <class Make>
-runner::BackEnd without_processes(Make make, void (*require_readable)(const sim::World&)) {
-  return {.require_readable = require_readable,
-          .start =
-              [make](sim::World world, const SimulatorSetup& setup) {
-                return std::make_unique<WithoutProcesses>(make(std::move(world), setup));
-              },
-          .files = [] { return std::vector<std::filesystem::path>{}; }};
+std::vector<std::filesystem::path> no_files() {
+  return {};
 }
 
 runner::BackEnd back_end(EmbeddedSimulator) {
-  return without_processes(
-      [](sim::World world, const SimulatorSetup& setup) {
-        return sim::make_mujoco_simulator(std::move(world), setup.warn, setup.threads_ahead);
-      },
-      [](const sim::World&) {});
+  const auto prepare = [](sim::World world, const sim::WarningSink& warn) -> StartSimulator {
+    return [make = sim::prepare_mujoco_simulator(std::move(world), warn)](
+               const SimulatorSetup& setup) {
+      return std::make_unique<WithoutProcesses>(make(setup.warn, setup.threads_ahead));
+    };
+  };
+  return {prepare, no_files};
 }
 
 runner::BackEnd back_end(const sim::protocol::Endpoint& endpoint) {
-  return without_processes(
-      [endpoint](sim::World world, const SimulatorSetup& setup) {
-        return attach(endpoint, std::move(world), setup);
-      },
-      sim::require_remote_cameras);
+  const auto prepare = [endpoint](const sim::World& world,
+                                  const sim::WarningSink&) -> StartSimulator {
+    sim::require_remote_cameras(world);
+    return [endpoint, world](const SimulatorSetup& setup) {
+      return std::make_unique<WithoutProcesses>(attach(endpoint, world, setup));
+    };
+  };
+  return {prepare, no_files};
 }
 
 runner::BackEnd back_end(GazeboSimulator) {
-  return {.require_readable =
-              [](const sim::World& world) {
-                sim::check_sdf_version(world, {.name = "Gazebo 11"});
-                sim::check_gazebo_world(world);
-                sim::require_remote_cameras(world);
-              },
-          .start =
-              [](sim::World world, const SimulatorSetup& setup) {
-                if (setup.on_setup) setup.on_setup("starting Gazebo");
-                return std::make_unique<InGazebo>(std::move(world), setup);
-              },
-          .files = [] { return sim::find_gazebo().files(); }};
+  const auto prepare = [](const sim::World& world, const sim::WarningSink&) -> StartSimulator {
+    sim::check_sdf_version(world, {.name = "Gazebo 11"});
+    sim::check_gazebo_world(world);
+    sim::require_remote_cameras(world);
+    return [world](const SimulatorSetup& setup) {
+      if (setup.on_setup) setup.on_setup("starting Gazebo");
+      return std::make_unique<InGazebo>(world, setup);
+    };
+  };
+  return {prepare, [] { return sim::find_gazebo().files(); }};
 }
 
 }  // namespace

@@ -24,8 +24,7 @@ int check_world(const WorldCheckOptions& options, const std::stop_token&) {
                       collect);
   const std::string file = world.file.string();
   const auto models = world.models.size(), lights = world.lights.size();
-  // Meshes are read by the simulator.
-  find_back_end("mujoco").start(std::move(world), {.answer_limit = {}, .log = {}, .warn = collect});
+  find_back_end("mujoco").prepare(std::move(world), collect);
   fmt::print("{}: can be used ({} models, {} lights); {}\n{}", file, models, lights,
              warnings.empty()
                  ? "everything is simulated as written"

@@ -16,8 +16,8 @@ namespace tether::runner {
 
 namespace {
 
-/// Applies what each condition changes of UAVs to a copy of the world, so that errors in it are
-/// found before anything is written.
+/// Prepares the simulator of each condition for a copy of the world to which what the condition
+/// changes of UAVs is applied, so that errors are found before anything is written.
 void try_conditions(const scenario::CampaignScenario& entry, const sim::World& world,
                     const FindBackEnd& find_back_end, const WarningSink& warn) {
   for (const std::string& name : entry.conditions) {
@@ -25,7 +25,7 @@ void try_conditions(const scenario::CampaignScenario& entry, const sim::World& w
     sim::World copy = world;
     scenario::resolve_energy(entry.scenario, condition, copy, warn);
     scenario::resolve_sensors(entry.scenario, condition, copy, warn);
-    find_back_end(condition.simulator).require_readable(copy);
+    find_back_end(condition.simulator).prepare(std::move(copy), warn);
   }
 }
 

@@ -143,12 +143,12 @@ SimulatorSetup simulator_setup(const TrialSpec& spec, const sim::World& world,
 
 /// @throws Error(kSetup) if the simulator, the board or a SUT cannot be started, or the simulator
 /// is lost before the run.
-campaign::TrialResult fly(const TrialSpec& spec, const BackEnd& back_end, sim::World world,
-                          const TrialInputs& inputs, const TrialObserver& observer,
-                          WarningLog& warnings, const std::stop_token& stop) {
+campaign::TrialResult fly(const TrialSpec& spec, const StartSimulator& start,
+                          const SimulatorSetup& setup, const TrialInputs& inputs,
+                          const TrialObserver& observer, WarningLog& warnings,
+                          const std::stop_token& stop) {
   const Boards boards = hold_boards(spec, stop);
-  const SimulatorSetup setup = simulator_setup(spec, world, observer, warnings, stop);
-  const auto simulator = back_end.start(std::move(world), setup);
+  const auto simulator = start(setup);
   for (std::size_t uav = 0; uav < spec.scenario.uavs.size(); ++uav)
     if (const auto& energy = spec.scenario.uavs[uav].energy;
         energy && !simulator->get().battery(uav))
@@ -200,6 +200,19 @@ std::string utc_now() {
       fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
 }
 
+/// Prepares the simulator. What is no mistake of the user's, such as too little memory, is thrown
+/// by the start instead, so that it ends in a result.
+StartSimulator prepare(const BackEnd& back_end, sim::World world, const WarningSink& warn) try {
+  return back_end.prepare(std::move(world), warn);
+} catch (const std::exception& e) {
+  const auto* error = dynamic_cast<const Error*>(&e);
+  if (error && exit_code(error->code()) == 2) throw;
+  return [failure = std::current_exception()](
+             const SimulatorSetup&) -> std::unique_ptr<RunningSimulator> {
+    std::rethrow_exception(failure);
+  };
+}
+
 }  // namespace
 
 SutPlace TrialSpec::sut_place(std::size_t uav) const {
@@ -227,15 +240,16 @@ campaign::TrialResult run_trial(const TrialSpec& spec, const FindBackEnd& find_b
   const TrialInputs inputs{
       scenario::resolve_sensors(spec.scenario, spec.condition, world, warnings.sink()),
       replayed_time(spec)};
-  back_end.require_readable(world);
   world.step = spec.scenario.step;
+  const SimulatorSetup setup = simulator_setup(spec, world, observer, warnings, stop);
   require_sut_programs(spec.scenario, spec.condition, spec.waits_for_sut);
+  const StartSimulator start = prepare(back_end, std::move(world), warnings.sink());
   TrialFolder folder(spec.folder, spec.earlier);
 
   const std::string started_at = utc_now();
   campaign::TrialResult result;
   try {
-    result = fly(spec, back_end, std::move(world), inputs, observer, warnings, stop);
+    result = fly(spec, start, setup, inputs, observer, warnings, stop);
   } catch (const Error& e) {
     result = setup_failure(spec, e.what(), stop.stop_requested());
   } catch (const std::bad_alloc&) {

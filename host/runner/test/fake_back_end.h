@@ -33,11 +33,11 @@ class FakeRunningSimulator final : public RunningSimulator {
 inline FindBackEnd fake_back_end(std::optional<std::string> lost = std::nullopt) {
   return [lost](const std::string& name) -> BackEnd {
     if (name != "fake") throw Error(ErrorCode::kUsage, "unknown simulator").about(name);
-    return {.require_readable = [](const sim::World&) {},
-            .start =
-                [lost](sim::World world, const SimulatorSetup&) {
-                  return std::make_unique<FakeRunningSimulator>(std::move(world), lost);
-                },
+    return {.prepare = [lost](sim::World world, const sim::WarningSink&) -> StartSimulator {
+              return [world, lost](const SimulatorSetup&) {
+                return std::make_unique<FakeRunningSimulator>(world, lost);
+              };
+            },
             .files = [] { return std::vector<std::filesystem::path>{"/fake/simulator"}; }};
   };
 }

@@ -58,8 +58,10 @@ TEST_F(Trial, FailsIfTheSimulatorIsLostOrCannotBeStarted) {
   EXPECT_EQ(result.reason, "the simulator was ended by signal 9; more");
   result = run([](const std::string& name) {
     BackEnd back_end = fake_back_end()(name);
-    back_end.start = [](sim::World, const SimulatorSetup&) -> std::unique_ptr<RunningSimulator> {
-      throw Error(ErrorCode::kSetup, "not installed");
+    back_end.prepare = [](const sim::World&, const sim::WarningSink&) -> StartSimulator {
+      return [](const SimulatorSetup&) -> std::unique_ptr<RunningSimulator> {
+        throw Error(ErrorCode::kSetup, "not installed");
+      };
     };
     return back_end;
   });

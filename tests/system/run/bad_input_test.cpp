@@ -58,6 +58,21 @@ const WrongInput kWrongInputs[] = {
      {},
      true},
     {"NoXml", {"</light>", "</ligt>"}, "<light name", {}, {}, true},
+    {"DamagedMesh",
+     {"<box><size>20 20 0.1</size></box>", "<mesh><uri>bad.obj</uri></mesh>"},
+     "bad.obj",
+     {"bad.obj: has no triangle"},
+     {},
+     true},
+    {"DamagedTexture",
+     {"<collision name=\"box\">",
+      "<visual name=\"v\"><geometry><sphere><radius>1</radius></sphere></geometry><material><pbr>"
+      "<metal><albedo_map>bad.png</albedo_map></metal></pbr></material></visual>"
+      "<collision name=\"box\">"},
+     "bad.png",
+     {"bad.png: cannot be read as PNG"},
+     {},
+     true},
 };
 
 class Input : public testing::TestWithParam<WrongInput> {};
@@ -69,6 +84,8 @@ TEST_P(Input, ThatIsWrongIsRefusedWithItsLine) {
   const auto world = folder / "world.sdf";
   write_text(world, read_text(hover_world()));
   write_text(scenario, substituted(read_text(scenario), {{hover_world(), world}}));
+  write_text(folder / "bad.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
+  write_text(folder / "bad.png", "no picture");
   const auto changed = in_world ? world : scenario;
   write_text(changed, substituted(read_text(changed), {change}));
   const Output output = run(with(tether({"run", scenario, "--out", folder / "out"}), options));

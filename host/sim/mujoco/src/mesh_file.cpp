@@ -268,6 +268,16 @@ std::unique_ptr<Assimp::Importer> import(const std::filesystem::path& file) {
   return importer;
 }
 
+bool has_area(const raster::Mesh& mesh) {
+  return std::ranges::any_of(mesh.triangles, [&](const auto& triangle) {
+    const auto at = [&](std::size_t i) {
+      const auto& [x, y, z] = mesh.vertices[triangle[i]].position;
+      return Vec3{x, y, z};
+    };
+    return norm(cross(at(1) - at(0), at(2) - at(0))) > 0.0;
+  });
+}
+
 // Moves the middle of its extent to the origin.
 void center(raster::Mesh& mesh) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -303,11 +313,12 @@ raster::Mesh MeshFiles::load(const MeshGeometry& mesh, const TextureScale& scale
           "has several materials, which are not used; the visual's material is"});
   }
   raster::Mesh out = collector.take();
-  if (out.triangles.empty()) {
+  if (out.triangles.empty() && !mesh.submesh.empty()) {
     throw Error(ErrorCode::kBadFile, {mesh.file.string(), 0},
-                mesh.submesh.empty() ? "has no triangle" : "has no submesh '" + mesh.submesh + "'")
+                "has no submesh '" + mesh.submesh + "'")
         .about(mesh.submesh);
   }
+  if (!has_area(out)) fail_mesh(mesh.file, "has no triangle with an area");
   if (mesh.is_centered) center(out);
   return out;
 }

@@ -29,8 +29,9 @@ class MeshFiles {
   /// the texture is projected along the main axis of each face. The file's own materials are not
   /// used; several ones cause a warning. No other file is opened, whatever this one names.
   /// @throws Error(kBadFile) with the file, about the submesh, if the file cannot be read, is
-  /// larger than 512 MiB, has no such submesh, no triangle, a number that is not finite or too
-  /// large, a face of more than 1000 corners, or more triangles than the renderer takes.
+  /// larger than 512 MiB, has no such submesh, no triangle with an area, a number that is not
+  /// finite or too large, a face of more than 1000 corners, or more triangles than the renderer
+  /// takes.
   raster::Mesh load(const MeshGeometry& mesh, const TextureScale& scale,
                     const WarningSink& warn) const;
 

@@ -13,11 +13,21 @@
 namespace tether::sim {
 namespace {
 
-SensorSuite::BackEnd back_end(const World& world, RayCaster& rays, int threads_ahead,
-                              const WarningSink& warn, const MeshFiles& meshes) {
-  // Shared by the function's copies, and the renderers.
-  const auto scene = std::make_shared<const raster::Scene>(make_scene(world, warn, meshes));
-  const auto make_renderer = [scene](raster::Helpers* helpers) {
+// A world, and what is made of it and the files that it names.
+struct Parts {
+  // Keeps the files of meshes only until all parts have read them.
+  Parts(World read, const WarningSink& warn, const MeshFiles& meshes = MeshFiles())
+      : world(std::move(read)),
+        dynamics(world, warn, meshes),
+        scene(std::make_shared<const raster::Scene>(make_scene(world, warn, meshes))) {}
+
+  World world;
+  Dynamics dynamics;
+  std::shared_ptr<const raster::Scene> scene;  // the renderers share it
+};
+
+SensorSuite::BackEnd back_end(const Parts& parts, RayCaster& rays, int threads_ahead) {
+  const auto make_renderer = [scene = parts.scene](raster::Helpers* helpers) {
     return std::make_unique<Renderer>(scene, helpers);
   };
   return {rays, make_renderer, threads_ahead};
@@ -25,15 +35,12 @@ SensorSuite::BackEnd back_end(const World& world, RayCaster& rays, int threads_a
 
 class MujocoSimulator final : public Simulator {
  public:
-  // Keeps the files of meshes only until all parts have read them.
-  MujocoSimulator(World world, WarningSink warn, int threads_ahead,
-                  const MeshFiles& meshes = MeshFiles())
-      : world_(std::move(world)),
+  MujocoSimulator(std::shared_ptr<Parts> parts, WarningSink warn, int threads_ahead)
+      : parts_(std::move(parts)),
         warn_(printable_warnings(std::move(warn))),
         grid_(world_.step),
-        dynamics_(world_, warn_, meshes),
         rays_(dynamics_.model()),
-        sensors_(world_, back_end(world_, rays_, threads_ahead, warn_, meshes), warn_) {}
+        sensors_(world_, back_end(*parts_, rays_, threads_ahead), warn_) {}
 
   const World& world() const override { return world_; }
   StepGrid grid() const override { return grid_; }
@@ -140,10 +147,11 @@ class MujocoSimulator final : public Simulator {
            "are more at once than the simulator keeps; some bodies pass through others"});
   }
 
-  World world_;
+  std::shared_ptr<Parts> parts_;
+  const World& world_ = parts_->world;
+  Dynamics& dynamics_ = parts_->dynamics;
   WarningSink warn_;
   StepGrid grid_;
-  Dynamics dynamics_;
   CollisionRays rays_;
   SensorSuite sensors_;
   Snapshot between_;  // reused
@@ -156,9 +164,18 @@ class MujocoSimulator final : public Simulator {
 
 const bool kHasMujoco = true;
 
-std::unique_ptr<Simulator> make_mujoco_simulator(World world, const WarningSink& warn,
-                                                 int threads_ahead) {
-  return std::make_unique<MujocoSimulator>(std::move(world), warn, threads_ahead);
+MakeMujocoSimulator prepare_mujoco_simulator(World world, const WarningSink& warn) {
+  const FileLocation file{world.file.string()};
+  try {
+    // Shared, because a std::function must be copyable.
+    const auto parts = std::make_shared<Parts>(std::move(world), printable_warnings(warn));
+    return [parts](const WarningSink& warn_later, int threads_ahead) {
+      return std::make_unique<MujocoSimulator>(parts, warn_later, threads_ahead);
+    };
+  } catch (const Error& e) {
+    if (e.code() != ErrorCode::kBadFile || !e.where().file.empty() || file.file.empty()) throw;
+    throw Error(ErrorCode::kBadFile, file, e.what()).about(e.subject());
+  }
 }
 
 }  // namespace tether::sim

@@ -5,8 +5,7 @@ namespace tether::sim {
 
 const bool kHasMujoco = false;
 
-std::unique_ptr<Simulator> make_mujoco_simulator(World /*world*/, const WarningSink& /*warn*/,
-                                                 int /*threads_ahead*/) {
+MakeMujocoSimulator prepare_mujoco_simulator(World /*world*/, const WarningSink& /*warn*/) {
   throw Error(ErrorCode::kSetup,
               "this build has no embedded simulator: install libmujoco-dev and libassimp-dev, "
               "and build again");

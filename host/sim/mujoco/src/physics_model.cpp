@@ -1,5 +1,6 @@
 #include "physics_model.h"
 
+#include "named_file.h"
 #include "triangle_mesh.h"
 
 #include <algorithm>
@@ -142,20 +143,24 @@ class PhysicsXml {
     const auto [known, is_new] = meshes_.try_emplace(key_of(mesh), meshes_.size());
     const std::string name = fmt::format("m{}", known->second);
     if (is_new) {
-      const std::vector<Vec3> corners = mesh_files_.corners(mesh);
-      if (is_flat(corners)) {
-        throw Error(ErrorCode::kBadFile, FileLocation{mesh.file.string()},
-                    fmt::format("is flat, so that collision '{}' has no volume: give the mesh a "
-                                "thickness, or use a thin <box>",
-                                collision.name));
-      }
       std::string vertices;
-      for (const Vec3& v : corners) {
+      for (const Vec3& v : read_named(mesh.named_at, [&] { return corners(mesh, collision); })) {
         fmt::format_to(std::back_inserter(vertices), "{} {} {} ", v.x, v.y, v.z);
       }
       assets_ += fmt::format(R"(<mesh name="{}" vertex="{}"/>)", name, vertices);
     }
     return fmt::format(R"(type="mesh" {} mesh="{}")", place(X), name);
+  }
+
+  std::vector<Vec3> corners(const MeshGeometry& mesh, const Collision& collision) const {
+    std::vector<Vec3> corners = mesh_files_.corners(mesh);
+    if (is_flat(corners)) {
+      throw Error(ErrorCode::kBadFile, FileLocation{mesh.file.string()},
+                  fmt::format("is flat, so that collision '{}' has no volume: give the mesh a "
+                              "thickness, or use a thin <box>",
+                              collision.name));
+    }
+    return corners;
   }
 
   const MeshFiles& mesh_files_;

@@ -13,8 +13,8 @@ namespace tether::sim {
 /// The world as the physics engine needs it: the collision shapes only, with gravity and the step.
 /// Static links are shapes of the engine's world body; body i of `moving_bodies` has a free joint
 /// at qpos 7·i and qvel 6·i, and is the engine's body i + 1. Static shapes never meet each other.
-/// @throws Error(kBadFile) for a mesh that cannot be read, Error(kSetup) when the model does not
-/// compile.
+/// @throws Error(kBadFile) where the world names a mesh that cannot be read or is flat; without a
+/// place when the model does not compile.
 ModelPtr make_physics_model(const World& world, const WarningSink& warn,
                             const MeshFiles& meshes = MeshFiles());
 

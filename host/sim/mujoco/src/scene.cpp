@@ -3,11 +3,11 @@
 
 #include "scene.h"
 
+#include "named_file.h"
 #include "texture_file.h"
 
 #include <algorithm>
 #include <map>
-#include <numbers>
 #include <optional>
 #include <tuple>
 
@@ -38,7 +38,6 @@ class SceneBuilder {
     for (const Visual& visual : link.visuals) {
       raster::Instance instance;
       instance.mesh = mesh_of(visual);
-      count_triangles(visual, parts_.meshes[instance.mesh]);
       instance.material = parts_.materials.size();
       instance.body = body;
       instance.X_BV = X * visual.X_LV;
@@ -70,8 +69,7 @@ class SceneBuilder {
     if (in.attenuation_constant + in.attenuation_linear + in.attenuation_quadratic <= 0.0) {
       light.attenuation_constant = 1.0F;
     }
-    light.spot_half_angle_rad =
-        std::clamp(0.5 * in.spot_outer_angle_rad, 0.0, 0.5 * std::numbers::pi);
+    light.spot_half_angle_rad = 0.5 * in.spot_outer_angle_rad;
     light.spot_exponent = static_cast<float>(std::clamp(in.spot_falloff, 0.0, 128.0));
     light.cast_shadows = in.cast_shadows && in.kind != LightKind::kPoint;
     if (in.cast_shadows && !light.cast_shadows) {
@@ -87,15 +85,6 @@ class SceneBuilder {
 
  private:
   static float factor(double attenuation) { return static_cast<float>(std::min(attenuation, 1e6)); }
-
-  // Stops before the next file fills the memory.
-  void count_triangles(const Visual& visual, const raster::Mesh& mesh) {
-    triangles_ += mesh.triangles.size();
-    const auto* const geometry = std::get_if<MeshGeometry>(&visual.geometry);
-    if (triangles_ <= raster::kMaxTriangles || !geometry) return;
-    throw Error(ErrorCode::kBadFile, FileLocation{geometry->file.string()},
-                "brings the world to more than 10,000,000 triangles");
-  }
 
   std::size_t mesh_of(const Visual& visual) {
     const TextureScale scale{visual.material.texture_repeat_x, visual.material.texture_repeat_y};
@@ -119,12 +108,24 @@ class SceneBuilder {
             [&](const PlaneGeometry& g) { return add(plane_mesh(g, scale)); },
             [&](const MeshGeometry& g) {
               const std::tuple key{key_of(g), scale.repeat_x_per_m, scale.repeat_y_per_m};
-              const auto [known, is_new] = meshes_.try_emplace(key);
-              if (is_new) known->second = add(mesh_files_.load(g, scale, warn_));
-              return known->second;
+              return read_named(g.named_at, [&] {
+                const auto [known, is_new] = meshes_.try_emplace(key);
+                if (is_new) known->second = add(mesh_files_.load(g, scale, warn_));
+                count_triangles(g, parts_.meshes[known->second]);
+                return known->second;
+              });
             },
         },
         visual.geometry);
+  }
+
+  // Stops before the next file fills the memory.
+  void count_triangles(const MeshGeometry& geometry, const raster::Mesh& mesh) {
+    triangles_ += mesh.triangles.size();
+    if (triangles_ > raster::kMaxTriangles) {
+      throw Error(ErrorCode::kBadFile, FileLocation{geometry.file.string()},
+                  "brings the world to more than 10,000,000 triangles");
+    }
   }
 
   raster::Material material_of(const Material& in) {
@@ -135,12 +136,13 @@ class SceneBuilder {
     material.emissive = rgb(in.emissive_rgb);
     material.alpha = static_cast<float>(in.alpha);
     material.shininess = kShininess;
-    material.texture = texture_of(in.albedo_map);
+    if (!in.albedo_map.empty()) {
+      read_named(in.albedo_map_at, [&] { material.texture = texture_of(in.albedo_map); });
+    }
     return material;
   }
 
-  std::optional<std::size_t> texture_of(const std::filesystem::path& file) {
-    if (file.empty()) return std::nullopt;
+  std::size_t texture_of(const std::filesystem::path& file) {
     const auto [known, is_new] = textures_.try_emplace(file);
     if (!is_new) return known->second;
     known->second = parts_.textures.size();
@@ -159,7 +161,7 @@ class SceneBuilder {
   std::size_t triangles_ = 0;
   std::size_t texels_ = 0;
   std::map<std::tuple<MeshKey, double, double>, std::size_t> meshes_;
-  std::map<std::filesystem::path, std::optional<std::size_t>> textures_;
+  std::map<std::filesystem::path, std::size_t> textures_;
 };
 
 }  // namespace

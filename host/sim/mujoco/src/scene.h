@@ -12,8 +12,8 @@ namespace tether::sim {
 ///
 /// Warns of lights beyond the 32nd, of point lights that should cast shadows, and of damaged
 /// textures.
-/// @throws Error(kBadFile) with the file of a mesh or texture that cannot be read, or with which
-/// the scene has more triangles or pixels of textures than the renderer takes.
+/// @throws Error(kBadFile) where the world names a mesh or texture that cannot be read, or with
+/// which the scene has more triangles or pixels of textures than the renderer takes.
 raster::SceneParts make_scene(const World& world, const WarningSink& warn,
                               const MeshFiles& meshes = MeshFiles());
 

@@ -85,6 +85,13 @@ TEST(BadWorlds, ValuesAreRefused) {
        "<max_step_size> of physics 'p'", "0.02"},
       {world_sdf("<light name='s' type='directional'><direction>0 0 0</direction></light>"), 3,
        "light 's'", "<direction>"},
+      {world_sdf(
+           "<light name='s' type='spot'><spot>\n<outer_angle>3.2</outer_angle></spot></light>"),
+       4, "<outer_angle> of light 's'", "3.1416"},
+      {world_sdf("<light name='s' type='point'>\n<intensity>1e7</intensity></light>"), 4,
+       "<intensity> of light 's'", "1000000"},
+      {visual("<plane><normal>0 0 0</normal><size>1 1</size></plane>"), 6, "<plane> of visual 'v'",
+       "<normal>"},
   });
 }
 

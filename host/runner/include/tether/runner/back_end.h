@@ -37,13 +37,16 @@ class RunningSimulator {
   virtual std::string post_mortem() { return ""; }
 };
 
+/// Starts a simulator with its world, or connects to it; called once at most.
+/// @throws Error(kSetup).
+using StartSimulator = std::function<std::unique_ptr<RunningSimulator>(const SimulatorSetup&)>;
+
 /// A simulator that a condition can select.
 struct BackEnd {
-  /// Checks that the simulator can read the world and has its sensors, to which all profiles have
-  /// been applied. @throws Error(kBadFile) with file and line.
-  std::function<void(const sim::World&)> require_readable;
-  /// Starts it, or connects to it. @throws Error(kSetup).
-  std::function<std::unique_ptr<RunningSimulator>(sim::World, const SimulatorSetup&)> start;
+  /// Reads what this program needs of the files that a world names, and checks that the simulator
+  /// has the world's sensors, to which all profiles have been applied. Starts nothing.
+  /// @throws Error(kBadFile) with file and line; Error(kSetup) if the simulator cannot hold it.
+  std::function<StartSimulator(sim::World, const sim::WarningSink&)> prepare;
   /// Files of the simulator that a result depends on. @throws Error(kSetup) if one is missing.
   std::function<std::vector<std::filesystem::path>()> files;
 };

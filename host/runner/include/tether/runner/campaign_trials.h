@@ -27,7 +27,7 @@ struct CampaignFiles {
 /// All files that the result of a trial depends on. Reads each of them, so that errors in them are
 /// found before anything is written, and keeps the worlds in `worlds`.
 /// @throws Error(kBadFile) with the file; Error(kUsage) for an unknown simulator; Error(kSetup) if
-///   a file of a simulator is missing.
+///   a file of a simulator is missing, or the simulator cannot hold a world.
 CampaignFiles files_of_trials(const scenario::Campaign& campaign, const FindBackEnd& find_back_end,
                               sim::WorldStore& worlds);
 

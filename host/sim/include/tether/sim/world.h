@@ -48,6 +48,7 @@ struct MeshGeometry {
   std::string submesh;         ///< empty: all
   uav::Vec3 scale{1.0, 1.0, 1.0};
   bool is_centered = false;  ///< moved so that the middle of its extent is the origin
+  FileLocation named_at{};   ///< where the world names the file; empty: in no file
 };
 using Geometry = std::variant<BoxGeometry, CylinderGeometry, SphereGeometry, CapsuleGeometry,
                               EllipsoidGeometry, PlaneGeometry, MeshGeometry>;
@@ -71,6 +72,7 @@ struct Material {
   std::filesystem::path albedo_map;  ///< PNG or JPEG; empty: none
   double texture_repeat_x = 1.0;     ///< repetitions per metre of surface (<tether:texture_repeat>)
   double texture_repeat_y = 1.0;
+  FileLocation albedo_map_at{};  ///< where the world names the texture; empty: in no file
 };
 
 struct Visual {

@@ -29,7 +29,8 @@ std::optional<MeshGeometry> read_mesh(const SdfSource& source, const sdf::Mesh& 
   const sdf::ElementPtr uri = find_path(mesh.Element(), {"uri"});
   if (!uri || mesh.Uri().empty()) refuse(source, mesh.Element(), "has no file name in <uri>");
   MeshGeometry geometry{source.find_resource(uri, mesh.Uri()), mesh.Submesh(),
-                        to_vec3(mesh.Scale()), mesh.CenterSubmesh() && !mesh.Submesh().empty()};
+                        to_vec3(mesh.Scale()), mesh.CenterSubmesh() && !mesh.Submesh().empty(),
+                        source.where(uri)};
   if (geometry.file.empty()) {
     warn_at(source, uri, Consequence::kMissing,
             "names '" + mesh.Uri() + "', which is not found; left out", warn);
@@ -42,6 +43,12 @@ std::optional<MeshGeometry> read_mesh(const SdfSource& source, const sdf::Mesh& 
   return geometry;
 }
 
+PlaneGeometry read_plane(const SdfSource& source, const sdf::Plane& plane) {
+  const Vec3 normal = to_vec3(plane.Normal());
+  if (norm(normal) == 0.0) refuse(source, plane.Element(), "has a <normal> of length 0");
+  return {normal, plane.Size().X(), plane.Size().Y()};
+}
+
 /// None for shapes that are not represented: the check of the elements has warned of them.
 std::optional<Geometry> read_geometry(const SdfSource& source, const sdf::Geometry& geometry,
                                       const WarningSink& warn) {
@@ -50,26 +57,28 @@ std::optional<Geometry> read_geometry(const SdfSource& source, const sdf::Geomet
   if (const auto* sphere = geometry.SphereShape()) return SphereGeometry{sphere->Radius()};
   if (const auto* c = geometry.CapsuleShape()) return CapsuleGeometry{c->Radius(), c->Length()};
   if (const auto* e = geometry.EllipsoidShape()) return EllipsoidGeometry{to_vec3(e->Radii())};
-  if (const auto* plane = geometry.PlaneShape())
-    return PlaneGeometry{to_vec3(plane->Normal()), plane->Size().X(), plane->Size().Y()};
+  if (const auto* plane = geometry.PlaneShape()) return read_plane(source, *plane);
   if (const auto* mesh = geometry.MeshShape()) return read_mesh(source, *mesh, warn);
   return std::nullopt;
 }
 
-std::filesystem::path read_albedo_map(const SdfSource& source, const sdf::ElementPtr& material,
-                                      const WarningSink& warn) {
-  sdf::ElementPtr map = find_path(material, {"pbr", "metal", "albedo_map"});
-  if (!map) map = find_path(material, {"pbr", "specular", "albedo_map"});
-  if (!map || map->Get<std::string>().empty()) return {};
+void read_albedo_map(const SdfSource& source, const sdf::ElementPtr& element,
+                     const WarningSink& warn, Material& material) {
+  sdf::ElementPtr map = find_path(element, {"pbr", "metal", "albedo_map"});
+  if (!map) map = find_path(element, {"pbr", "specular", "albedo_map"});
+  if (!map || map->Get<std::string>().empty()) return;
   const std::filesystem::path file = source.find_resource(map, map->Get<std::string>());
   const std::string extension = extension_of(file);
-  if (extension == ".png" || extension == ".jpg" || extension == ".jpeg") return file;
+  if (extension == ".png" || extension == ".jpg" || extension == ".jpeg") {
+    material.albedo_map = file;
+    material.albedo_map_at = source.where(map);
+    return;
+  }
   warn_at(source, map, Consequence::kLooksDifferent,
           "names '" + map->Get<std::string>() +
               (file.empty() ? "', which is not found; the colours are used"
                             : "', which is neither a PNG nor a JPEG file; the colours are used"),
           warn);
-  return {};
 }
 
 /// A colour that the file gives, or `otherwise`.
@@ -80,7 +89,7 @@ Vec3 color_or(const sdf::Material& material, const char* name, const ignition::m
 
 void read_texture(const SdfSource& source, const sdf::ElementPtr& element, const WarningSink& warn,
                   Material& material) {
-  material.albedo_map = read_albedo_map(source, element, warn);
+  read_albedo_map(source, element, warn, material);
   const sdf::ElementPtr repeat = find_path(element, {"tether:texture_repeat"});
   if (!repeat) return;
   const std::vector<double> numbers = read_numbers(source, repeat, 2);

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <utility>
 
 #include <tether/sim/simulator.h>
 
@@ -8,6 +10,16 @@ namespace tether::sim {
 
 /// Whether this build contains the embedded back end.
 extern const bool kHasMujoco;
+
+/// Makes the embedded simulator of a world that was read; see `make_mujoco_simulator`. Called once:
+/// the simulator takes what was read.
+using MakeMujocoSimulator =
+    std::function<std::unique_ptr<Simulator>(const WarningSink& warn, int threads_ahead)>;
+
+/// Reads the meshes and textures that a world names, and checks that it can be simulated.
+/// @throws Error(kBadFile) where the world names a file that cannot be used, else at its own file;
+/// Error(kSetup) when the back end is not built in or memory runs out.
+MakeMujocoSimulator prepare_mujoco_simulator(World world, const WarningSink& warn);
 
 /// The embedded simulator: MuJoCo for dynamics, `sim/raster` for cameras. Its images have the same
 /// bytes on every machine.
@@ -21,8 +33,10 @@ extern const bool kHasMujoco;
 /// Expected pictures are drawn on `threads_ahead` threads of its own; 0: `expect` does nothing.
 ///
 /// `warn` receives one line for each thing of the world that MuJoCo cannot represent.
-/// @throws Error(kSetup) when the back end is not built in or the model does not compile.
-std::unique_ptr<Simulator> make_mujoco_simulator(World world, const WarningSink& warn,
-                                                 int threads_ahead = 0);
+/// @throws as `prepare_mujoco_simulator`.
+inline std::unique_ptr<Simulator> make_mujoco_simulator(World world, const WarningSink& warn,
+                                                        int threads_ahead = 0) {
+  return prepare_mujoco_simulator(std::move(world), warn)(warn, threads_ahead);
+}
 
 }  // namespace tether::sim
