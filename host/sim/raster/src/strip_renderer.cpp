@@ -113,7 +113,7 @@ PixelRect StripRenderer::pixels_with(std::size_t layer, const Job& job, const St
   for_each_tile(job.lens, strip, [&](const Tile& tile, std::size_t) {
     const std::size_t step = placed_ / layers_of(job, tile);
     if (layer % step != step / 2) return;
-    pixels.include({tile.x, tile.y, tile.x + tile.width - 1, tile.y + tile.height - 1});
+    pixels.include(pixels_of(tile));
   });
   return pixels;
 }
@@ -137,8 +137,29 @@ void StripRenderer::draw_tile(const Job& job, const Tile& tile, std::size_t list
   if (!job.picture.entity.empty()) store_entities(job, exposed, tile);
 }
 
+// Sets TileIds::everywhere if all layers of a tile show the same triangle in all pixels. Depths
+// need more than that.
+bool StripRenderer::find_only(const Job& job, const Exposed& exposed, const Tile& tile,
+                              Names names) {
+  if (!job.picture.depth_m.empty() || job.lens.blind_pixels() > 0) return false;
+  std::uint32_t id = 0;
+  for (std::size_t k = 0; k < exposed.count; ++k) {
+    const Layer& layer = exposed.layer(k);
+    if (!layer.transparent[exposed.list].empty()) return false;
+    const auto only =
+        raster::find_only(layer, job.lens, tile, layer.opaque[exposed.list], job.view.far_m);
+    if (!only) return false;
+    const std::uint32_t own = name_of(layer, *only, names);
+    if (k > 0 && own != id) return false;
+    id = own;
+  }
+  for (std::size_t k = 0; k < exposed.count; ++k) ids_[exposed.place(k)].everywhere = id;
+  return true;
+}
+
 void StripRenderer::rasterize(const Job& job, const Exposed& exposed, const Tile& tile) {
   const Names names = shades_mean(exposed) ? Names::kKeys : Names::kPlaces;
+  if (find_only(job, exposed, tile, names)) return;
   for (std::size_t k = 0; k < exposed.count; ++k) {
     const std::size_t i = exposed.place(k);
     clear(job.view.far_m, ids_[i]);

@@ -41,6 +41,7 @@ class StripRenderer {
   PixelRect pixels_with(std::size_t layer, const Job& job, const Strip& strip) const;
   Exposed exposed_on(const Job& job, const Tile& tile, std::size_t list) const;
   void draw_tile(const Job& job, const Tile& tile, std::size_t list);
+  bool find_only(const Job& job, const Exposed& exposed, const Tile& tile, Names names);
   void rasterize(const Job& job, const Exposed& exposed, const Tile& tile);
   static bool shades_mean(const Exposed& exposed);
   void shade(const Job& job, const Exposed& exposed, const Tile& tile);

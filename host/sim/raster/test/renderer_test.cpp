@@ -110,11 +110,37 @@ TEST(Renderer, RefusesAProcessorWithoutTheInstructionsItNeeds) {
   }
 }
 
+// A textured wall that is all that most tiles show, and a ball before it.
+SceneParts wall_parts() {
+  SceneParts parts = plain_parts(rectangle(-9.0F, -9.0F, 9.0F, 9.0F, 3.0F), {1.0F, 1.0F, 1.0F});
+  parts.textures.push_back(noise(5, 64, 64));
+  parts.materials[0].texture = 0;
+  parts.meshes.push_back(ball(0.2F, 8));
+  Instance before = parts.instances[0];
+  before.mesh = 1;
+  before.body = 0;
+  before.X_BV.p = {0.5, 0.2, 2.0};
+  parts.instances.push_back(before);
+  return parts;
+}
+
+void expect_the_same_without_depths(Renderer& renderer, const View& view) {
+  const Drawing all = draw(renderer, view);
+  Drawing some = all;
+  std::ranges::fill(some.rgb, std::uint8_t{1});
+  std::ranges::fill(some.entity, 77U);
+  Picture picture;
+  picture.rgb = some.rgb;
+  picture.entity = some.entity;
+  renderer.draw(view, picture);
+  EXPECT_EQ(hash_of(some), hash_of(all));
+}
+
 // Whatever moves, however fast, seen through whatever lens and shutter.
 TEST(Renderer, DrawsAnyViewTheSameWithAllInstructionsAndThreads) {
   SceneParts opaque = rich_parts();
   opaque.materials[2].alpha = 1.0F;
-  const std::array scenes{Scene(rich_parts()), Scene(opaque)};
+  const std::array scenes{Scene(rich_parts()), Scene(opaque), Scene(wall_parts())};
   const std::vector<std::int64_t> targets = hwy::SupportedAndGeneratedTargets();
   TwoHelpers helpers;
   for (std::uint64_t seed = 0; seed < 24; ++seed) {
@@ -137,14 +163,17 @@ TEST(Renderer, DrawsAnyViewTheSameWithAllInstructionsAndThreads) {
     view.readout_s = seed % 2 == 0 ? 0.02 : 0.0;
     view.spacing_s = 0.5 * (view.exposure_s + view.readout_s);
     view.antialias = seed % 5 == 0;
+    if (seed % 7 == 0) view.far_m = 2.9;
     for (const Scene& scene : scenes) {
       Renderer alone(scene);
       const std::uint64_t expected = hash_of(draw(alone, view));
       Renderer helped(scene, &helpers);
       EXPECT_EQ(hash_of(draw(helped, view)), expected) << seed << ": with helpers";
+      expect_the_same_without_depths(helped, view);
       for (std::size_t i = 0; targets.size() > 1 && i < targets.size(); ++i) {
         const ForcedInstructions forced(targets[i]);
         EXPECT_EQ(hash_of(draw(alone, view)), expected) << seed << ": " << Renderer::instructions();
+        expect_the_same_without_depths(alone, view);
       }
     }
   }

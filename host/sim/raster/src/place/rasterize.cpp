@@ -132,8 +132,8 @@ class GridEdges {
   struct Rows {
     int first, last;
   };
-  // The rows in which a pixel of a vector may be inside, and hardly more: the edge that most of
-  // them are beyond is beyond the others.
+  // The rows in which a pixel of a vector may be inside. Each edge bounds them; a row too many does
+  // no harm.
   Rows rows(int column, int count) const {
     constexpr float kSlack = 0.01F;
     float low = 0.0F;
@@ -162,7 +162,7 @@ class GridEdges {
 
   const Coverage& t_;
   std::array<std::int32_t, 3> at_;
-  std::array<float, 3> rows_per_step_;  // of an edge by −1; of no use where b = 0
+  std::array<float, 3> rows_per_step_;  // −1/b; not used where b = 0
   bool misses_ = false;
 };
 
@@ -268,10 +268,9 @@ void rasterize_samples(const Coverage& t, std::uint32_t id, const Tile& tile, co
 template <class Target>
 void rasterize_all(const Layer& layer, const Lens& lens, const Tile& tile,
                    std::span<const std::uint32_t> triangles, Names names, const Target& target) {
-  const FixedRect bounds =
-      lens.samples_of({tile.x, tile.y, tile.x + tile.width - 1, tile.y + tile.height - 1});
+  const FixedRect bounds = lens.samples_of(pixels_of(tile));
   for (const std::uint32_t i : triangles) {
-    const std::uint32_t id = names == Names::kKeys ? layer.keys[i] : i + 1;
+    const std::uint32_t id = name_of(layer, i, names);
     if (lens.is_grid()) {
       rasterize_on_grid(layer.coverage[i], id, tile, target);
     } else {
@@ -311,7 +310,23 @@ HWY_EXPORT(clear_on);
 HWY_EXPORT(rasterize_nearest_on);
 HWY_EXPORT(rasterize_next_on);
 
+std::optional<std::uint32_t> find_only(const Layer& layer, const Lens& lens, const Tile& tile,
+                                       std::span<const std::uint32_t> triangles,
+                                       double farthest_m) {
+  const FixedRect bounds = lens.samples_of(pixels_of(tile));
+  std::optional<std::uint32_t> only;
+  for (const std::uint32_t i : triangles) {
+    const Reach of_tile = reach(layer.coverage[i], bounds, 7U);
+    if (of_tile.is_none) continue;
+    if (only || of_tile.edges != 0) return std::nullopt;
+    only = i;
+  }
+  const auto least = static_cast<float>(1.0 / farthest_m);
+  return only && layer.coverage[*only].depth.low > least ? only : std::nullopt;
+}
+
 void clear(double farthest_m, TileIds& ids) {
+  ids.everywhere = 0;
   HWY_DYNAMIC_DISPATCH(clear_on)(static_cast<float>(1.0 / farthest_m), ids);
 }
 

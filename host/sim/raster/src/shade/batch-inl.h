@@ -58,20 +58,25 @@ HWY_INLINE std::uint32_t ends_of_row(const TileIds& ids, std::size_t row_begin) 
   });
 }
 
-// Calls `use` with each run of a tile's pixels that have the same id.
+// Calls `use` with each run of a tile's pixels that have the same id, and that id.
 template <class Use>
 HWY_INLINE void for_each_run(const Tile& tile, const TileIds& ids, const Use& use) {
   const std::uint32_t all = ~0U >> (kTile_px - tile.width);
-  const auto rows = static_cast<std::size_t>(tile.height);
-  for (std::size_t begin = 0; begin < rows * kTile_px; begin += kTile_px) {
-    for_each_run_of(all, ends_of_row(ids, begin), begin, use);
+  const std::size_t pixels = static_cast<std::size_t>(tile.height) * kTile_px;
+  if (ids.everywhere != 0 && tile.width == kTile_px) return use(ids.everywhere, 0, pixels);
+  for (std::size_t row = 0; row < pixels; row += kTile_px) {
+    const std::uint32_t ends = ids.everywhere != 0 ? 0 : ends_of_row(ids, row);
+    for_each_run_of(all, ends, row, [&](std::size_t begin, std::size_t end) {
+      use(ids.everywhere != 0 ? ids.everywhere : ids.id[begin], begin, end);
+    });
   }
 }
 
-// The same for those whose id is not that of `others`.
+// The same for those whose id is not that of `others`. All or none have the same id everywhere.
 template <class Use>
 HWY_INLINE void for_each_difference(const Tile& tile, const TileIds& ids, const TileIds& others,
                                     const Use& use) {
+  if (ids.everywhere != 0) return;
   const std::uint32_t all = ~0U >> (kTile_px - tile.width);
   const auto rows = static_cast<std::size_t>(tile.height);
   for (std::size_t begin = 0; begin < rows * kTile_px; begin += kTile_px) {
@@ -79,7 +84,8 @@ HWY_INLINE void for_each_difference(const Tile& tile, const TileIds& ids, const 
       return hn::Ne(hn::Load(DU(), ids.id.data() + at), hn::Load(DU(), others.id.data() + at));
     });
     if ((differing & all) == 0) continue;
-    for_each_run_of(differing & all, ends_of_row(ids, begin), begin, use);
+    for_each_run_of(differing & all, ends_of_row(ids, begin), begin,
+                    [&](std::size_t first, std::size_t end) { use(ids.id[first], first, end); });
   }
 }
 
@@ -87,7 +93,7 @@ HWY_INLINE void for_each_difference(const Tile& tile, const TileIds& ids, const 
 class Batch {
  public:
   void clear() { neighbours_ = singles_ = 0; }
-  // Some that follow each other in a row.
+  // Some that follow each other.
   HWY_INLINE void add(std::size_t begin, std::size_t end) {
     for (; end - begin >= lanes(); begin += lanes()) {
       of_neighbours_[neighbours_++] = static_cast<std::uint16_t>(begin);
@@ -194,8 +200,9 @@ HWY_INLINE void shade_tile(const LayerTile& on, const TileIds& ids, const UseEmp
                            const OfTriangle& of_triangle) {
   Runs& runs = on.shading.runs;
   runs.clear(on.layer.coverage.size() + 1);
-  for_each_run(on.tile, ids,
-               [&](std::size_t begin, std::size_t end) { runs.add(ids.id[begin], begin, end); });
+  for_each_run(on.tile, ids, [&](std::uint32_t id, std::size_t begin, std::size_t end) {
+    runs.add(id, begin, end);
+  });
   for (const std::uint32_t id : runs.ids()) {
     Batch batch;
     runs.for_each(id, [&](std::size_t begin, std::size_t end, std::size_t)

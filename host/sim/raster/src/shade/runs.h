@@ -8,7 +8,7 @@
 
 namespace tether::raster {
 
-/// Runs of neighbouring pixels in a row of a tile that see the same triangle in a layer, by
+/// Runs of pixels that follow each other in a tile and see the same triangle in a layer, by
 /// triangle.
 class Runs {
  public:

@@ -118,17 +118,16 @@ class Mean {
 
   void find_runs() {
     Runs& runs = shading_.runs;
-    const auto& middle = exposed_.ids(middle_).id;
     runs.clear(exposed_.primitives.size() + 1);
-    for_each_run(tile_, exposed_.ids(middle_), [&](std::size_t begin, std::size_t end) {
-      runs.add(middle[begin], begin, end, middle_);
-    });
+    for_each_run(tile_, exposed_.ids(middle_),
+                 [&](std::uint32_t id, std::size_t begin, std::size_t end) {
+                   runs.add(id, begin, end, middle_);
+                 });
     for (std::size_t k = 0; k < exposed_.count; ++k) {
       if (k == middle_) continue;
-      const auto& ids = exposed_.ids(k).id;
       for_each_difference(tile_, exposed_.ids(k), exposed_.ids(middle_),
-                          [&](std::size_t begin, std::size_t end) {
-                            runs.add(ids[begin], begin, end, k);
+                          [&](std::uint32_t id, std::size_t begin, std::size_t end) {
+                            runs.add(id, begin, end, k);
                             for (std::size_t at = begin; at < end; ++at) seen_[at] -= once(k);
                           });
     }
@@ -389,8 +388,7 @@ void store_row_on(const std::uint32_t* pixels, int count, std::uint8_t* rgb) {
 
 void find_entities_on(const Layer& layer, std::span<const Primitive> by_key, const Tile& tile,
                       const TileIds& ids, TilePixels& entities) {
-  for_each_run(tile, ids, [&](std::size_t begin, std::size_t end) {
-    const std::uint32_t id = ids.id[begin];
+  for_each_run(tile, ids, [&](std::uint32_t id, std::size_t begin, std::size_t end) {
     const std::uint32_t entity =
         by_key.empty() || id == 0 ? layer.entity_of(id) : by_key[id - 1].entity;
     std::fill(entities.data() + begin, entities.data() + end, entity);
