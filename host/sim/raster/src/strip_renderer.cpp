@@ -141,7 +141,9 @@ void StripRenderer::draw_tile(const Job& job, const Tile& tile, std::size_t list
 // need more than that.
 bool StripRenderer::find_only(const Job& job, const Exposed& exposed, const Tile& tile,
                               Names names) {
-  if (!job.picture.depth_m.empty() || job.lens.blind_pixels() > 0) return false;
+  if (tile.width < kTile_px || !job.picture.depth_m.empty() || job.lens.blind_pixels() > 0) {
+    return false;
+  }
   std::uint32_t id = 0;
   for (std::size_t k = 0; k < exposed.count; ++k) {
     const Layer& layer = exposed.layer(k);

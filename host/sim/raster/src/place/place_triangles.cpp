@@ -86,8 +86,9 @@ void set_edge(Coverage& coverage, std::size_t i, const FixedPoint& p, const Fixe
 }
 
 // Whether a small triangle covers no pixel of a grid, like most of those of a far mesh.
-bool is_between_pixels(const Coverage& t, const PixelRect& p) {
+bool is_between_pixels(const Coverage& t) {
   constexpr int kFew = 8;
+  const PixelRect& p = t.pixels;
   if ((p.x_high - p.x_low + 1) * (p.y_high - p.y_low + 1) > kFew) return false;
   for (int y = p.y_low; y <= p.y_high; ++y) {
     for (int x = p.x_low; x <= p.x_high; ++x) {
@@ -207,19 +208,16 @@ class Placer {
     if (area == 0 || (area > 0 && !both_sides)) return;
     const FixedRect bounds{std::min({p.x, q.x, r.x}), std::min({p.y, q.y, r.y}),
                            std::max({p.x, q.x, r.x}), std::max({p.y, q.y, r.y})};
-    const PixelRect all_pixels = lens_.pixels_of(bounds);
-    const PixelRect pixels = common_part(all_pixels, pixels_);
+    Coverage coverage{};
+    coverage.pixels = lens_.pixels_of(bounds);
+    const PixelRect pixels = common_part(coverage.pixels, pixels_);
     if (pixels.is_empty()) return;
     const FixedPoint& second = area < 0 ? r : q;
     const FixedPoint& third = area < 0 ? q : r;
-    Coverage& coverage = layer_.coverage.emplace_back();
     set_edge(coverage, 0, p, second);
     set_edge(coverage, 1, second, third);
     set_edge(coverage, 2, third, p);
-    if (lens_.is_grid() && is_between_pixels(coverage, all_pixels)) {
-      layer_.coverage.pop_back();
-      return;
-    }
+    if (lens_.is_grid() && is_between_pixels(coverage)) return;
     coverage.pixels = pixels;
     for (std::size_t i = 0; i < 3; ++i) {
       const std::size_t at = corners_[i];
@@ -229,6 +227,7 @@ class Placer {
     coverage.visual = static_cast<std::uint32_t>(layer_.visuals.size() - 1);
     coverage.triangle = triangle_;
     coverage.depth = depth_of(coverage.corners, layer_.projection, lens_.seen_part(bounds));
+    layer_.coverage.push_back(coverage);
     add_to_tiles(pixels, bounds);
   }
 

@@ -22,7 +22,8 @@ inline PixelRect pixels_of(const Tile& t) {
 /// For each pixel of a tile, the triangle that is seen there (0: none) and the reciprocal of its
 /// depth.
 struct TileIds {
-  /// If not 0: all pixels see this triangle, and the arrays are not set.
+  /// If not 0: all pixels see this triangle, the arrays are not set, and the tile has its full
+  /// width.
   std::uint32_t everywhere = 0;
   alignas(64) std::array<std::uint32_t, kTilePixels + kMaxLanes> id;  ///< some more, to be read
   alignas(64) std::array<float, kTilePixels> inverse_depth;

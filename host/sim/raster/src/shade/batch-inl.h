@@ -63,12 +63,10 @@ template <class Use>
 HWY_INLINE void for_each_run(const Tile& tile, const TileIds& ids, const Use& use) {
   const std::uint32_t all = ~0U >> (kTile_px - tile.width);
   const std::size_t pixels = static_cast<std::size_t>(tile.height) * kTile_px;
-  if (ids.everywhere != 0 && tile.width == kTile_px) return use(ids.everywhere, 0, pixels);
+  if (ids.everywhere != 0) return use(ids.everywhere, 0, pixels);
   for (std::size_t row = 0; row < pixels; row += kTile_px) {
-    const std::uint32_t ends = ids.everywhere != 0 ? 0 : ends_of_row(ids, row);
-    for_each_run_of(all, ends, row, [&](std::size_t begin, std::size_t end) {
-      use(ids.everywhere != 0 ? ids.everywhere : ids.id[begin], begin, end);
-    });
+    for_each_run_of(all, ends_of_row(ids, row), row,
+                    [&](std::size_t begin, std::size_t end) { use(ids.id[begin], begin, end); });
   }
 }
 
