@@ -83,10 +83,9 @@ runner::BackEnd back_end(EmbeddedSimulator) {
 }
 
 runner::BackEnd back_end(const sim::protocol::Endpoint& endpoint) {
-  const auto prepare = [endpoint](const sim::World& world,
-                                  const sim::WarningSink&) -> StartSimulator {
+  const auto prepare = [endpoint](sim::World world, const sim::WarningSink&) -> StartSimulator {
     sim::require_remote_cameras(world);
-    return [endpoint, world](const SimulatorSetup& setup) {
+    return [endpoint, world = std::move(world)](const SimulatorSetup& setup) {
       return std::make_unique<WithoutProcesses>(attach(endpoint, world, setup));
     };
   };
@@ -94,11 +93,11 @@ runner::BackEnd back_end(const sim::protocol::Endpoint& endpoint) {
 }
 
 runner::BackEnd back_end(GazeboSimulator) {
-  const auto prepare = [](const sim::World& world, const sim::WarningSink&) -> StartSimulator {
+  const auto prepare = [](sim::World world, const sim::WarningSink&) -> StartSimulator {
     sim::check_sdf_version(world, {.name = "Gazebo 11"});
     sim::check_gazebo_world(world);
     sim::require_remote_cameras(world);
-    return [world](const SimulatorSetup& setup) {
+    return [world = std::move(world)](const SimulatorSetup& setup) {
       if (setup.on_setup) setup.on_setup("starting Gazebo");
       return std::make_unique<InGazebo>(world, setup);
     };
