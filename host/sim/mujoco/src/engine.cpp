@@ -84,13 +84,11 @@ ModelPtr compile_model(const std::string& xml) {
   out_of_memory = false;
   std::array<char, 1000> message{};
   ModelPtr model(mj_loadXML(kName, memory.get(), message.data(), static_cast<int>(message.size())));
-  if (!model && out_of_memory) {
+  if (model) return model;
+  if (out_of_memory) {
     throw Error(ErrorCode::kSetup, "MuJoCo: not enough memory for the world's model");
   }
-  if (!model) {
-    throw Error(ErrorCode::kBadFile, "MuJoCo cannot use the world: " + one_line(message.data()));
-  }
-  return model;
+  throw Error(ErrorCode::kBadFile, "MuJoCo cannot use the world: " + one_line(message.data()));
 }
 
 DataPtr make_data(const mjModel& model) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include <tether/base/error.h>
 
 namespace tether::sim {
