@@ -139,6 +139,24 @@ struct UavEnergy {
 };
 double total_J(const energy::Energies_J& spent_J);
 
+/// What a run did not see or could not measure well, so that its verdict may be wrong. The part of
+/// it that follows from the files is Warning::can_change_verdict.
+struct Doubt {
+  enum class Kind {
+    kUnseenWait,       ///< the program waited on something that Tether does not see; amount: s
+    kParallelThreads,  ///< threads computed in parallel, but their times were added; amount: CPU
+                       ///< time over wall time, > 1
+    kBusyMachine,      ///< the machine was busy or uneven; amount: relative spread of a fixed block
+  };
+  Kind kind = Kind::kUnseenWait;
+  std::string subject;  ///< the UAV of the program, or the machine
+  double amount = 0.0;
+
+  friend bool operator==(const Doubt&, const Doubt&) = default;
+};
+/// "unseen_wait", "parallel_threads", "busy_machine".
+std::string_view name(Doubt::Kind kind);
+
 /// Everything that may differ between two runs of the same trial with the same execution times.
 struct ThisRun {
   std::string started_at;  ///< ISO 8601, UTC
@@ -150,6 +168,7 @@ struct ThisRun {
   std::optional<TargetReport> target{};      ///< none if it was not read
   std::vector<TargetReport> more_targets{};  ///< further machines of a mixed fleet
   std::vector<std::string> notes{};          ///< unintended stalls of the run, one line each
+  std::vector<Doubt> doubts{};               ///< in the order of their kinds and subjects
   std::vector<std::string> sut_files{};  ///< written by SUTs; paths in the trial's folder, sorted
   std::optional<SimulatorFigures> simulator{};  ///< none: not measured
   std::string node{};  ///< the machine whose worker flew it; empty: no worker did
