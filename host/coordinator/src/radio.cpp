@@ -152,8 +152,11 @@ void Coordinator::Impl::expel(Session& session, const Fault& fault) {
 
 // --- the record ---------------------------------------------------------------------------------
 
+// A SUT may have sent a message at an ET that ST has not reached when the run ends early: such a
+// message, like the call that sent it, has not happened.
 void Coordinator::Impl::log_in_transit() {
-  for (const radio::Arrival& arrival : medium_.in_transit(st())) log_arrival(arrival);
+  for (const radio::Arrival& arrival : medium_.in_transit(st()))
+    if (grid().floor(arrival.message.sent_at) <= st()) log_arrival(arrival);
 }
 
 void Coordinator::Impl::log_arrival(const radio::Arrival& arrival) {

@@ -113,6 +113,23 @@ TEST_F(RadioTest, TheRecordHasEachMessageAtEachReceiver) {
   EXPECT_EQ(recorder_.header.radio.model, "log_distance");
 }
 
+TEST_F(RadioTest, WhatIsSentAfterTheEndIsNotInTheRecord) {
+  for (const bool is_in_step : {true, false}) {
+    make(2);
+    server_->add_sut(hello(name_of(0)), {send(microseconds(is_in_step ? 300 : 5'300))});
+    const link::PeerId lost = add_silent(false, name_of(1));
+    hooks_.should_stop = [&, polls = 0]() mutable -> std::optional<Ending> {
+      if (++polls == 5) server_->disconnect(lost);
+      return std::nullopt;
+    };
+    EXPECT_EQ(run().end, RunEnd::kSutLost);
+    EXPECT_EQ(recorder_.footer->st_at_end, st_ms(0));
+    ASSERT_EQ(recorder_.radio.size(), is_in_step ? 1u : 0u) << "ST is 0 ms at the end";
+    for (const record::RadioMessage& message : recorder_.radio)
+      EXPECT_EQ(message.at, same_instant(us(300))) << "not before it was sent";
+  }
+}
+
 TEST_F(RadioTest, WhatIsStillInTransitAtTheEndIsInTheRecord) {
   options_.radio.delay = std::chrono::seconds(5);
   run_all({{send(milliseconds(1)), finish({})}, {finish({})}});
