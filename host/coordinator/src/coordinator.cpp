@@ -157,6 +157,7 @@ void Coordinator::Impl::start() {
   for (Session& session : sessions_) {
     barrier_.add(ExecTime{},
                  session.is_concurrent() ? sync::SutKind::kConcurrent : sync::SutKind::kSerial);
+    computes_from(session, ExecTime{});
     if (session.hello.clock == link::ClockKind::kUnstamped) {
       session.timer.emplace(ExecTime{}, started_);
       unstamped_.push_back(session.uav);
@@ -193,7 +194,6 @@ bool Coordinator::Impl::is_repeatable() const {
 bool Coordinator::Impl::advance() {
   const WallTime now = host_clock_();
   read_timers(now);
-  for (const std::size_t uav : std::exchange(expelled_from_boards_, {})) settle_board(uav);
   release_ready();
   const SimTime target = paced(next_stop(), now);
   if (target <= st()) return false;
@@ -290,7 +290,7 @@ void Coordinator::Impl::end_endless(Session& session) {
   if (!is_computing(session) || bound >= limit || computed <= limit - bound) return;
   if (!boards_.shares(session.uav)) return barrier_.progress(session.uav, limit);
   boards_.progress(session.uav, limit - bound);
-  settle_board(session.uav);
+  release_ready();
 }
 
 void Coordinator::Impl::stop_if_asked() {
@@ -337,11 +337,14 @@ RunStatus Coordinator::Impl::status(WallTime now) const {
   for (const Session& session : sessions_)
     if (session.joined()) ++status.joined;
   if (!running_ || !is_synchronised()) return status;
-  for (const Session& session : sessions_)
-    status.et = std::max(status.et.value_or(ExecTime{}), barrier_.bound(session.uav));
-  if (const auto slowest = barrier_.slowest_computing())
-    status.waiting_for =
-        sessions_[boards_.shares(*slowest) ? boards_.awaited(*slowest) : *slowest].uav_name;
+  const Session* slowest = nullptr;
+  for (const Session& session : sessions_) {
+    const ExecTime bound = barrier_.bound(session.uav);
+    status.et = std::max(status.et.value_or(ExecTime{}), bound);
+    if (is_computing(session) && (!slowest || bound < barrier_.bound(slowest->uav)))
+      slowest = &session;
+  }
+  if (slowest) status.waiting_for = slowest->uav_name;
   return status;
 }
 

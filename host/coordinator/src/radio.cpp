@@ -107,6 +107,7 @@ void Coordinator::Impl::promise(Session& session, PendingInteraction& pending, E
   if (reply_at == entry.reply_at) return;
   entry.reply_at = reply_at;
   barrier_.move_up(session.uav, entry.sequence, reply_at);
+  if (boards_.shares(session.uav)) boards_.resume(session.uav, reply_at);
   if (!session.is_concurrent()) return;
   session.newest_moved_due = pending.moved_due = ++session.dues_sent;
   server_->send(session.peer, link::Due{entry.sequence, reply_at});
@@ -145,9 +146,7 @@ void Coordinator::Impl::expel(Session& session, const Fault& fault) {
                  fmt::format("the SUT of UAV \"{}\" sent {}", session.uav_name, fault.what)};
   log_.footer().expelled.push_back(session.uav_name);
   leave(session);
-  if (!boards_.shares(session.uav)) return;
-  boards_.leave(session.uav);
-  expelled_from_boards_.push_back(session.uav);
+  if (boards_.shares(session.uav)) boards_.leave(session.uav);
 }
 
 // --- the record ---------------------------------------------------------------------------------

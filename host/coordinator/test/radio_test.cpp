@@ -21,13 +21,6 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-Act send(Duration compute, std::string to = "", std::size_t bytes = 10) {
-  return {compute, link::SendMessage{std::move(to), std::vector<std::uint8_t>(bytes, 7)}};
-}
-Act receive(Duration compute, Duration timeout) {
-  return {compute, link::ReceiveMessage{timeout}};
-}
-
 class RadioTest : public CoordinatorTest {
  protected:
   // "uav1", "uav2", …
