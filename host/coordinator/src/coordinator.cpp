@@ -168,11 +168,14 @@ void Coordinator::Impl::start() {
   stepper_.act();
   log_.race_again();
   for (const Session& session : sessions_)
-    server_->send(session.peer, link::Welcome{.catalogue = catalogue_of(session),
-                                              .free_running = !is_synchronised(),
-                                              .start = ExecTime{},
-                                              .computing = time_given(session),
-                                              .peers = peers_of(session)});
+    server_->send(
+        session.peer,
+        link::Welcome{.catalogue = catalogue_of(session),
+                      .free_running = !is_synchronised(),
+                      .start = ExecTime{},
+                      .computing = time_given(session),
+                      .peers = peers_of(session),
+                      .real_time_factor = is_synchronised() ? 1.0 : options_.real_time_factor});
 }
 
 uav::Catalogue Coordinator::Impl::catalogue_of(const Session& session) const {
@@ -227,7 +230,7 @@ void Coordinator::Impl::read_timers(WallTime now) {
 SimTime Coordinator::Impl::next_stop() const {
   const SimTime bound = is_synchronised() ? barrier_.lower_bound() : SimTime::max();
   return std::min({bound, time_limit_, fallen_at_.value_or(SimTime::max()), stepper_.next_due(),
-                   next_radio(), st() + kStepsPerTurn * grid().dt()});
+                   next_radio(), next_wake(), st() + kStepsPerTurn * grid().dt()});
 }
 
 // How much of that the pace allows.

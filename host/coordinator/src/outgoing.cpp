@@ -54,9 +54,7 @@ void Coordinator::Impl::answer_free_running() {
     for (std::size_t i = 0; i < session.open.size();) {
       PendingInteraction& pending = session.open[i];
       const Sampler::Read* read = stepper_.sampler(session.uav).find(pending.entry.sequence);
-      const bool waits = pending.entry.receive_until && !pending.is_promised &&
-                         *pending.entry.receive_until > same_instant(st());
-      if (waits || (read && !read->state)) {
+      if (waits_until(pending) > st() || (read && !read->state)) {
         ++i;
         continue;
       }

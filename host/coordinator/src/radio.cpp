@@ -60,14 +60,8 @@ std::optional<sync::SutTime> Coordinator::Impl::next_arrival() const {
 
 // How far ST may advance before something is due here.
 SimTime Coordinator::Impl::next_radio() const {
-  SimTime due = SimTime::max();
-  if (const auto next = medium_.next()) due = std::max(grid().floor(next->at), st());
-  if (is_synchronised()) return due;
-  for (const Session& session : sessions_)
-    for (const PendingInteraction& pending : session.open)
-      if (pending.entry.receive_until)
-        due = std::min(due, grid().ceil(same_instant(*pending.entry.receive_until)));
-  return due;
+  const auto next = medium_.next();
+  return next ? std::max(grid().floor(next->at), st()) : SimTime::max();
 }
 
 void Coordinator::Impl::settle_radio() {
