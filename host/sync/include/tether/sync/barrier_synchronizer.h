@@ -106,8 +106,8 @@ struct TimeAdvanceGrant {
 /// Progress: if each computing SUT requests or reports progress again, and each concurrent one
 /// stops when a reply is due, every held call is released.
 ///
-/// Each function takes a number of steps that is logarithmic in the number of SUTs. Not thread-safe.
-/// Allocates only in `add`.
+/// Each function takes a number of steps that is logarithmic in the number of SUTs. Not
+/// thread-safe. Allocates only in `add`.
 class BarrierSynchronizer {
  public:
   explicit BarrierSynchronizer(StepGrid grid);
