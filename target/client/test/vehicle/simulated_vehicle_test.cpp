@@ -241,7 +241,7 @@ TEST_F(SimulatedVehicleTest, DoesNotHoldEtInFreeRunning) {
   EXPECT_EQ(coordinator_->requests().at(0).issued_at, ExecTime(40ms));
   EXPECT_EQ(vehicle_->now(), ExecTime(45ms));
   ASSERT_TRUE(vehicle_->sleep_for(20ms).ok());
-  const auto& slept = coordinator_->requests().at(1);
+  const Request slept = coordinator_->requests().at(1);
   EXPECT_EQ(std::get<link::Sleep>(slept.body).until, slept.issued_at + 20ms);
   EXPECT_TRUE(std::get<link::Sleep>(slept.body).is_relative);
   ASSERT_TRUE(vehicle_->annotate("task", "{}").ok());
