@@ -111,6 +111,7 @@ Result<Message> read(const wire::Welcome& welcome) {
   out.start = from_ns<ExecTime>(welcome.start_et_ns());
   out.computing = read(welcome.computing());
   out.peers = texts_of(welcome.peers());
+  out.real_time_factor = welcome.real_time_factor();
   return Message(std::move(out));
 }
 

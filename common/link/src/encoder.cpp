@@ -190,9 +190,10 @@ Content write(FlatBufferBuilder& b, const Welcome& welcome, ImageSlot&) {
   const auto catalogue = write(b, welcome.catalogue);
   const StageTimes computing = write(b, welcome.computing);
   const auto peers = welcome.peers.empty() ? 0 : b.CreateVectorOfStrings(welcome.peers);
-  return {wire::Content::Welcome, wire::CreateWelcome(b, catalogue, welcome.free_running,
-                                                      to_ns(welcome.start), computing, peers)
-                                      .Union()};
+  return {wire::Content::Welcome,
+          wire::CreateWelcome(b, catalogue, welcome.free_running, to_ns(welcome.start), computing,
+                              peers, welcome.real_time_factor)
+              .Union()};
 }
 Content write(FlatBufferBuilder& b, const Refusal& refusal, ImageSlot&) {
   const auto message = b.CreateString(refusal.message);

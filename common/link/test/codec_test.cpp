@@ -113,9 +113,11 @@ TEST(Codec, WelcomeFieldByField) {
   welcome.catalogue.anchors = {{"box", uav::AnchorShape::kCylinder, {1, 2, 3}, {0, 0.5, 1}}};
   welcome.free_running = true;
   welcome.start = from_ns<ExecTime>(77);
+  welcome.real_time_factor = 0.3;
 
   const Welcome got = decoded(welcome);
   EXPECT_TRUE(got.free_running);
+  EXPECT_EQ(got.real_time_factor, 0.3);
   EXPECT_EQ(got.start, welcome.start);
   ASSERT_EQ(got.catalogue.sensors.size(), 3u);
   const auto& [name, X_BS, rate_hz, properties] = got.catalogue.sensors[0];

@@ -148,16 +148,27 @@ class ConsistencyCheck {
                                missing, kMostOpenCalls)});
   }
 
-  // Rule 8: only a read that waits for its sensor's next measurement is held, or a receive, and
-  // readings are of the state at release.
+  // Rule 8: only a read that waits for its sensor's next measurement is held, a receive or a sleep,
+  // and readings are of the state at release.
   void check_free_running(const Logged<Interaction>& entry) {
     const Interaction& message = entry.message;
     if (message.kind == record::kSensor) {
       check_free_reading(entry);
+    } else if (message.kind == record::kSleep) {
+      check_free_sleep(entry);
     } else if (message.kind != record::kReceive && message.st_at_release != message.st_at_arrival) {
       report_.add(8, entry, "held from ST {} to {} in a free-running record",
                   ns(message.st_at_arrival), ns(message.st_at_release));
     }
+  }
+
+  void check_free_sleep(const Logged<Interaction>& entry) {
+    const Interaction& message = entry.message;
+    if (!message.sleep_until) return report_.add(0, entry, "sleep without its end");
+    const Wide wake =
+        std::max(wide(message.st_at_arrival), grid_.at_or_after(wide(*message.sleep_until)));
+    if (wide(message.st_at_release) != wake)
+      report_.add(8, entry, "woken at ST {} instead of ST {}", ns(message.st_at_release), ns(wake));
   }
 
   void check_free_reading(const Logged<Interaction>& entry) {

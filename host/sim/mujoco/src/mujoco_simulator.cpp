@@ -112,9 +112,9 @@ class MujocoSimulator final : public Simulator {
     check_uav(uav);
     return dynamics_.battery(uav);
   }
-  void computed(std::size_t uav, Duration busy) override {
+  void computing(std::size_t uav, double cores) override {
     check_uav(uav);
-    dynamics_.computed(uav, busy);
+    dynamics_.computing(uav, cores);
   }
 
   std::string description() const override {

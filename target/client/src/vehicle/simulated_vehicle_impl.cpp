@@ -18,12 +18,12 @@ SimulatedVehicle::SimulatedVehicle(std::unique_ptr<link::Channel> channel, link:
       channel_(std::move(channel)),
       source_(std::move(source)),
       wall_(std::move(wall)),
+      free_running_(welcome.free_running),
       stages_(welcome.start),
       given_(std::move(welcome.computing)) {
   if (welcome.free_running) {
-    auto clock = std::make_unique<FreeRunningClock>(*source_, *wall_, welcome.start);
-    free_running_ = clock.get();
-    clock_ = std::move(clock);
+    clock_ = std::make_unique<FreeRunningClock>(*source_, *wall_, welcome.start,
+                                                welcome.real_time_factor);
   } else {
     clock_ = std::make_unique<BarrierClock>(*source_, welcome.start);
   }
@@ -82,7 +82,7 @@ ExecTime SimulatedVehicle::begin_call(const Body& body) {
     return clock_->begin();
   }
   const ExecTime stamp = clock_->begin();
-  if (free_running_ == nullptr) stages_.reach(stamp);
+  if (!free_running_) stages_.reach(stamp);
   return stamp;
 }
 
@@ -102,8 +102,7 @@ Result<link::Reply> SimulatedVehicle::ask(const link::Request& request) {
   if (!message) return message.failure();
   auto* reply = std::get_if<link::Reply>(&*message);
   if (reply == nullptr) return protocol_failure("it is not a Reply");
-  if (const Status good = check(*reply, request, free_running_ != nullptr); !good)
-    return good.failure();
+  if (const Status good = check(*reply, request, free_running_); !good) return good.failure();
   return std::move(*reply);
 }
 
@@ -146,10 +145,6 @@ Status SimulatedVehicle::sleep_until(ExecTime until) {
 }
 
 Status SimulatedVehicle::sleep_alone(ExecTime until, bool is_relative) {
-  if (free_running_ != nullptr) {
-    free_running_->sleep_until(until);
-    return ok_status();
-  }
   link::Sleep sleep = make_sleep(until);
   sleep.is_relative = is_relative;
   return status_of(interact_alone(sleep));
@@ -160,13 +155,13 @@ Status SimulatedVehicle::annotate(std::string_view topic, std::string_view json)
   const std::lock_guard lock(calls_);
   if (const Status good = usable(); !good) return good;  // others were first
   // Under the barrier the clock is stopped. In free-running mode no time is charged.
-  const ExecTime at = free_running_ == nullptr ? clock_->begin() : clock_->now();
+  const ExecTime at = free_running_ ? clock_->now() : clock_->begin();
   Status sent = ok_status();
   {
     const std::lock_guard sending(sending_);
     sent = channel_->send(link::Annotation{at, std::string(topic), std::string(json)});
   }
-  if (free_running_ == nullptr) clock_->end(at);
+  if (!free_running_) clock_->end(at);
   return sent;
 }
 
@@ -179,7 +174,7 @@ Status SimulatedVehicle::change_stage(Change change) {
   if (const Status good = usable(); !good) return good;
   const std::lock_guard lock(calls_);
   if (const Status good = usable(); !good) return good;  // others were first
-  if (free_running_ != nullptr) return change(stages_);
+  if (free_running_) return change(stages_);
   if (source_->computing() > Duration::zero()) {
     stages_.reach(stages_.reached());
     return change(stages_);

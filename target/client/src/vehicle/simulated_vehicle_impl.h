@@ -56,7 +56,7 @@ class SimulatedVehicle final : public InteractingVehicle {
   std::unique_ptr<TimeSource> source_;
   std::unique_ptr<WallTimer> wall_;
   std::unique_ptr<InteractionClock> clock_;
-  FreeRunningClock* free_running_ = nullptr;  // clock_, if that is its policy
+  bool free_running_;  // the policy of clock_
 
   std::mutex calls_;  // taken before sending_; guards what is below sending_
 

@@ -231,7 +231,8 @@ TEST_F(SimulatedVehicleTest, DoesNotHoldEtInFreeRunning) {
   start(
       [this](const Request& r) {
         wall_->advance(5ms);
-        return one(Reply{r.sequence, from_ns<ExecTime>(0), {}});
+        const bool sleeps = std::holds_alternative<link::Sleep>(r.body);
+        return one(Reply{r.sequence, sleeps ? ExecTime(90ms) : r.issued_at + 5ms, {}});
       },
       true);
   wall_->advance(10ms);
@@ -240,10 +241,14 @@ TEST_F(SimulatedVehicleTest, DoesNotHoldEtInFreeRunning) {
   EXPECT_EQ(coordinator_->requests().at(0).issued_at, ExecTime(40ms));
   EXPECT_EQ(vehicle_->now(), ExecTime(45ms));
   ASSERT_TRUE(vehicle_->sleep_for(20ms).ok());
+  const Request slept = coordinator_->requests().at(1);
+  EXPECT_EQ(std::get<link::Sleep>(slept.body).until, slept.issued_at + 20ms);
+  EXPECT_TRUE(std::get<link::Sleep>(slept.body).is_relative);
   ASSERT_TRUE(vehicle_->annotate("task", "{}").ok());
-  EXPECT_EQ(vehicle_->now(), ExecTime(65ms));
-  EXPECT_EQ(wall_->slept(), 50ms);
-  EXPECT_EQ(coordinator_->requests().size(), 1u);
+  EXPECT_EQ(vehicle_->now(), ExecTime(90ms)) << "ST at the reply";
+  ASSERT_TRUE(vehicle_->sleep_until(ExecTime(95ms)).ok());
+  EXPECT_FALSE(std::get<link::Sleep>(coordinator_->requests().at(2).body).is_relative);
+  EXPECT_EQ(wall_->slept(), 30ms) << "the stall";
 }
 
 class IncompleteSource final : public TimeSource {

@@ -65,6 +65,7 @@ struct StageTime {
 /// its sensor, or is "command", "sleep" or "finish"; before the first one is "start".
 std::string stage_between(std::string_view previous_call, std::string_view call);
 
+inline constexpr double kMaxRealTimeFactor = 1e4;
 /// Coordinator → SUT: accepted.
 struct Welcome {
   uav::Catalogue catalogue;
@@ -73,6 +74,7 @@ struct Welcome {
   /// With the clock "replayed": what each stage takes until the first call.
   std::vector<StageTime> computing{};
   std::vector<std::string> peers{};  ///< the other UAVs, to which messages can be sent
+  double real_time_factor = 1.0;     ///< in free running: ST per WT at most
 };
 
 /// Coordinator → SUT: not accepted, or the run is over. SUT → coordinator: its execution time is
@@ -94,7 +96,7 @@ struct ReadSensor {
 struct SetVelocity {
   uav::VelocityCommand command;
 };
-/// Wait until ET `until` (in free running the client sleeps itself and does not send this).
+/// Wait until ET `until`; in free running, until that ST.
 struct Sleep {
   ExecTime until;
   /// The sleep ends as long after the request as `until` is after the request's stamp: on a board

@@ -97,8 +97,8 @@ class Simulator {
 
   /// The battery at `now()`. None: the UAV has no model of energy, or it is not simulated.
   virtual std::optional<energy::Status> battery(std::size_t /*uav*/) const { return std::nullopt; }
-  /// The UAV's computer computed for that long, summed over its cores (energy::Meter::computed).
-  virtual void computed(std::size_t /*uav*/, Duration /*busy*/) {}
+  /// From now on, so many cores of the UAV's computer are busy (energy::Meter::computing).
+  virtual void computing(std::size_t /*uav*/, double /*cores*/) {}
 
   /// Name and version, for the record: "MuJoCo 2.2.2, software renderer".
   virtual std::string description() const = 0;
