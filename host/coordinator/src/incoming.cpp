@@ -420,6 +420,8 @@ ExecTime Coordinator::Impl::accept_command(Session& session, PendingInteraction&
   const SimTime effect = same_instant(pending.entry.request_at) + session.command_latency;
   pending.entry.effect_at =
       stepper_.command(session.uav, pending.entry.sequence, set.command, effect);
+  const auto& [velocity, yaw_rate] = set.command;
+  pending.entry.command = {velocity.x, velocity.y, velocity.z, yaw_rate};
   pending.entry.grid_error = *pending.entry.effect_at - effect;
   return pending.entry.request_at;
 }
