@@ -116,9 +116,10 @@ std::string bounds_text(const CountedTarget& target) {
     if (target.costs[kind] <= target.floor_ns[kind])
       bounded += (bounded.empty() ? "" : ", ") + std::string(kWorkClassNames[kind]);
   const double cycle_ns = target.floor_ns[0] * kMostPerCycle[0];
-  return "No cost is below what the widest cores need at this clock rate: " + fixed(cycle_ns, 3) +
-         " ns for\neight pieces of work, for four of floating-point or vector work, for two "
-         "multiplications,\nfor one division or atomic operation.\n" +
+  return "A cycle is " + fixed(cycle_ns, 3) + " ns (block " + kChain +
+         "). No cost is below what the widest cores need: an eighth of a\n"
+         "cycle, a quarter for floating-point and vector work, half for a multiplication, and one "
+         "cycle for\na division or an atomic operation.\n" +
          (bounded.empty() ? "No cost is at this bound.\n"
                           : "At this bound, because the blocks do not show more: " + bounded +
                                 ".\n");
@@ -205,9 +206,9 @@ std::string counted_target_text(const std::string& name, const CountedTarget& ta
                         plain(counted.program) + " under " + emulator.program + ", " +
                         plain(counted.when) + ".\n\n" + prediction_table(target);
   std::string text = "# ";
-  for (const char c : comment.substr(0, comment.size() - 1)) {
-    text += c;
-    if (c == '\n') text += "# ";
+  for (std::size_t i = 0; i + 1 < comment.size(); ++i) {
+    text += comment[i];
+    if (comment[i] == '\n') text += comment[i + 1] == '\n' ? "#" : "# ";
   }
   text += "\nname = " + toml_string(name) +
           "\ndescription = " + toml_string(machine_line(there.machine) + ", by counted work") +

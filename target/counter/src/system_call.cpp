@@ -7,12 +7,12 @@ namespace {
 
 using enum SystemCall;
 
-struct Row {
+struct Number {
   std::int16_t x86_64, aarch64;  // -1: there is none
   SystemCall call;
 };
 
-constexpr Row kCalls[] = {
+constexpr Number kCalls[] = {
     {0, 63, kWaits},     // read
     {7, -1, kWaits},     // poll
     {17, 67, kWaits},    // pread64
@@ -53,12 +53,12 @@ struct Special {
 };
 constexpr Special kClone = {56, 220}, kFutex = {202, 98};
 
-SystemCall clone(std::uint64_t flags) {
+SystemCall clone_call(std::uint64_t flags) {
   constexpr std::uint64_t kCloneThread = 0x10000;
   return (flags & kCloneThread) != 0 ? kStartsThread : kStartsProcess;
 }
 
-SystemCall futex(std::uint64_t operation) {
+SystemCall futex_call(std::uint64_t operation) {
   constexpr std::uint64_t kOptions = 128 | 256;  // private, of the real-time clock
   switch (operation & ~kOptions) {
     case 1:   // FUTEX_WAKE
@@ -79,9 +79,9 @@ SystemCall futex(std::uint64_t operation) {
 SystemCall system_call(bool is_arm, std::int64_t number, std::uint64_t first,
                        std::uint64_t second) {
   const auto number_of = [is_arm](const auto& row) { return is_arm ? row.aarch64 : row.x86_64; };
-  if (number == number_of(kClone)) return clone(first);
-  if (number == number_of(kFutex)) return futex(second);
-  for (const Row& row : kCalls)
+  if (number == number_of(kClone)) return clone_call(first);
+  if (number == number_of(kFutex)) return futex_call(second);
+  for (const Number& row : kCalls)
     if (number == number_of(row)) return row.call;
   return kShort;
 }

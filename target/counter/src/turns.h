@@ -25,8 +25,11 @@ namespace tether::counter {
 /// Every call is made by the thread that it is about, but for `begins`. Thread-safe.
 class Turns {
  public:
-  /// `page` must outlive it.
-  explicit Turns(CountPage& page) : page_(page) {}
+  /// `page` must outlive it. A call that lasts longer than `longest_short_call` waits, whatever it
+  /// is: it writes to a pipe that is full.
+  explicit Turns(CountPage& page,
+                 std::chrono::milliseconds longest_short_call = std::chrono::milliseconds(500))
+      : page_(page), longest_short_call_(longest_short_call) {}
 
   /// A thread was started, by the one that computes. It computes until its first system call.
   void begins(unsigned thread);
@@ -59,6 +62,7 @@ class Turns {
   void changed();
 
   CountPage& page_;
+  const std::chrono::milliseconds longest_short_call_;
   std::mutex mutex_;
   // Guarded by mutex_:
   std::condition_variable changed_;

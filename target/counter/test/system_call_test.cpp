@@ -7,7 +7,7 @@ namespace {
 
 using enum SystemCall;
 
-struct Case {
+struct CallCase {
   const char* name;
   int x86_64, aarch64;
   std::uint64_t first, second;
@@ -16,7 +16,7 @@ struct Case {
 
 TEST(SystemCallOf, IsKnownForBothArchitectures) {
   constexpr std::uint64_t kPrivate = 128, kRealTime = 256;
-  const Case cases[] = {{"read", 0, 63, 3, 0, kWaits},
+  const CallCase cases[] = {{"read", 0, 63, 3, 0, kWaits},
                         {"write", 1, 64, 3, 0, kShort},
                         {"ppoll", 271, 73, 0, 0, kWaits},
                         {"clone of a thread", 56, 220, 0x3d0f00, 0, kStartsThread},
@@ -27,7 +27,7 @@ TEST(SystemCallOf, IsKnownForBothArchitectures) {
                         {"futex wait_bitset", 202, 98, 0, 9 | kPrivate | kRealTime, kWaits},
                         {"futex wake", 202, 98, 0, 1 | kPrivate, kWakes},
                         {"unknown", 100'000, 100'000, 0, 0, kShort}};
-  for (const Case& one : cases) {
+  for (const CallCase& one : cases) {
     EXPECT_EQ(system_call(false, one.x86_64, one.first, one.second), one.call) << one.name;
     EXPECT_EQ(system_call(true, one.aarch64, one.first, one.second), one.call) << one.name;
   }

@@ -9,14 +9,15 @@ namespace tether::counter {
 namespace {
 
 using enum SystemCall;
-using std::chrono_literals::operator""s;
+using namespace std::chrono_literals;
 
 constexpr auto kLimit = 10s;
 
 /// A program with threads 0 and 1 in flight: 0 computes, 1 waits.
 class TurnsTest : public ::testing::Test {
  protected:
-  TurnsTest() {
+  explicit TurnsTest(std::chrono::milliseconds longest_short_call = 1h)
+      : turns_(page_, longest_short_call) {
     turns_.begins(0);
     turns_.begins(1);
     turns_.enters_kernel(1, kWaits);
@@ -40,7 +41,12 @@ class TurnsTest : public ::testing::Test {
   void compute(double us) { page_.units += static_cast<std::uint64_t>(us * 1e3 * kCostUnitsPerNs); }
 
   CountPage page_;
-  Turns turns_{page_};
+  Turns turns_;
+};
+
+class ShortCall : public TurnsTest {
+ protected:
+  ShortCall() : TurnsTest(1ms) {}
 };
 
 TEST_F(TurnsTest, AWokenThreadComputesWhenItsWakerWaits) {
@@ -93,7 +99,7 @@ TEST_F(TurnsTest, AStartedThreadComputesToItsFirstSystemCallAndThenQueues) {
   EXPECT_EQ(fault(), CountFault::kNone);
 }
 
-TEST_F(TurnsTest, AShortCallThatLastsLetsAnotherThreadCompute) {
+TEST_F(ShortCall, LetsAnotherThreadComputeIfItLasts) {
   turns_.enters_kernel(0, kShort);  // writes to a pipe that is full
   auto reader = leaves(1);
   ASSERT_EQ(reader.wait_for(kLimit), std::future_status::ready);
