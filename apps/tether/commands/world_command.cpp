@@ -24,8 +24,10 @@ int check_world(const WorldCheckOptions& options, const std::stop_token&) {
                       collect);
   const std::string file = world.file.string();
   const auto models = world.models.size(), lights = world.lights.size();
+  const std::string step =
+      fmt::format("step {} ms{}", 1e3 * to_seconds(world.step), sim::set_at(world));
   find_back_end("mujoco").prepare(std::move(world), collect);
-  fmt::print("{}: can be used ({} models, {} lights); {}\n{}", file, models, lights,
+  fmt::print("{}: can be used ({} models, {} lights, {}); {}\n{}", file, models, lights, step,
              warnings.empty()
                  ? "everything is simulated as written"
                  : fmt::format("{} things are not simulated as written", warnings.size()),

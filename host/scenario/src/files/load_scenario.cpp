@@ -311,19 +311,26 @@ void read_record(const toml::Table& root, Scenario& scenario) {
   const toml::Table record =
       root.table("record", {"ground_truth_period_ms", "images", "image_period_ms"});
   constexpr toml::Range kImagePeriod_ms{.min = 0.0, .max = 1e6};
-  const toml::Range period_ms{.min = to_seconds(scenario.step) * 1e3, .max = 1e6};
+  const toml::Range period_ms{.min = 1e3 * to_seconds(scenario.step.value_or(sim::kLeastStep)),
+                              .max = 1e6};
   scenario.ground_truth_period =
       record.duration_or("ground_truth_period_ms", period_ms, scenario.ground_truth_period);
+  if (record.has("ground_truth_period_ms"))
+    scenario.ground_truth_at = record.where("ground_truth_period_ms");
   scenario.record_images = record.boolean_or("images", scenario.record_images);
   scenario.image_period =
       record.duration_or("image_period_ms", kImagePeriod_ms, scenario.image_period);
 }
 
 void read_limits(const toml::Table& root, Scenario& scenario) {
-  constexpr toml::Range kStep_ms{.min = 0.01, .max = 100.0};
+  constexpr toml::Range kStep_ms{.min = 1e3 * to_seconds(sim::kLeastStep),
+                                 .max = 1e3 * to_seconds(sim::kMostStep)};
   constexpr toml::Range kSpan_s{.min = 0.0, .max = kLongestRun_s, .above_min = true};
   constexpr toml::Range kSpeed_m_s{.min = 0.0, .with_inf = true};
-  scenario.step = root.duration_or("step_ms", kStep_ms, scenario.step);
+  if (root.has("step_ms")) {
+    scenario.step = root.duration("step_ms", kStep_ms);
+    scenario.step_at = root.where("step_ms");
+  }
   scenario.time_limit = root.duration("time_limit_s", kSpan_s);
   scenario.hang_limit = root.duration_or("hang_limit_s", kSpan_s, scenario.hang_limit);
   scenario.connect_limit = root.duration_or("connect_limit_s", kSpan_s, scenario.connect_limit);
