@@ -164,6 +164,7 @@ campaign::TrialResult fly(const TrialSpec& spec, const StartSimulator& start,
     for (const MachineReadings& machine : conducted.others)
       campaign::add_target(result, machine.info, machine.after);
     result.this_run.notes = conducted.notes;
+    result.this_run.doubts = conducted.doubts;
     const auto& notes = inputs.replayed.warnings;
     result.this_run.notes.insert(result.this_run.notes.end(), notes.begin(), notes.end());
     if (const auto work = simulator->get().work())

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
+#include <iterator>
 #include <utility>
 
 #include <fmt/format.h>
@@ -258,6 +259,7 @@ std::vector<SutGroup> groups_of(const TrialSpec& spec, const Boards& boards,
 TrialRun::TrialRun(const TrialSpec& spec, const TrialInputs& inputs, RunningSimulator& simulator,
                    const Boards& boards, const TrialObserver& observer, std::stop_token stop)
     : spec_(spec),
+      inputs_(inputs),
       simulator_(simulator),
       boards_(boards),
       observer_(observer),
@@ -285,7 +287,9 @@ Conducted TrialRun::conduct() {
   TrialEnd end = fly();
   end.report.reason += explanation(end);
   end_suts(end);
-  return {std::move(end.report), std::move(notes_), target_, target_after_, std::move(others_)};
+  std::vector<campaign::Doubt> doubted = doubts(end.report);
+  return {std::move(end.report), std::move(notes_), std::move(doubted),
+          target_,               target_after_,     std::move(others_)};
 }
 
 TrialEnd TrialRun::fly() {
@@ -302,6 +306,11 @@ TrialEnd TrialRun::fly() {
   hooks.on_refused = [&](const std::string& address, const std::string& reason) {
     refusals_.add(address, reason, !spec_.waits_for_sut && !have_all_joined_);
   };
+  SutWatch watched(server_->address().port);
+  hooks.on_joined = [&](std::size_t uav, const std::string& address, std::uint32_t process) {
+    watched.joined(uav, address, process);
+  };
+  hooks.threads_of = [&](std::size_t uav) { return watched.states(uav); };
   hooks.read_target = [&] { return read_targets(); };
   if (!sut_run_.counts.empty())
     hooks.computed_by = [&](std::size_t uav) {
@@ -312,6 +321,16 @@ TrialEnd TrialRun::fly() {
   refusals_.close();
   notes_ = stalls.notes(host_clocks());
   return end;
+}
+
+std::vector<campaign::Doubt> TrialRun::doubts(const coordinator::RunReport& report) const {
+  std::vector<campaign::Doubt> doubts;
+  for (std::size_t uav = 0; uav < report.suts.size(); ++uav)
+    std::ranges::copy(doubts_of(report.suts[uav], clock_of(for_uav(spec_.condition, uav)),
+                                inputs_.replayed.has_waits),
+                      std::back_inserter(doubts));
+  std::ranges::stable_sort(doubts, {}, &campaign::Doubt::kind);
+  return doubts;
 }
 
 /// The first one is for the record.
