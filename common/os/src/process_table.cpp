@@ -11,6 +11,7 @@
 #include <fcntl.h>
 #include <signal.h>
 #include <sys/prctl.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <tether/os/file_descriptor.h>
@@ -94,6 +95,23 @@ void add_states(pid_t process, std::string_view left_out, ThreadStates& sum) {
   for (const pid_t child : children_of(process)) add_states(child, left_out, sum);
 }
 
+Duration used_below(pid_t process) {
+  Duration used{0};
+  for (const pid_t child : children_of(process))
+    if (const auto stat = process_stat(child))
+      used += stat->used + stat->waited_children + used_below(child);
+  return used;
+}
+
+Duration used_by(int whom) {
+  rusage usage{};
+  getrusage(whom, &usage);
+  Duration used{0};
+  for (const timeval& part : {usage.ru_utime, usage.ru_stime})
+    used += std::chrono::seconds(part.tv_sec) + std::chrono::microseconds(part.tv_usec);
+  return used;
+}
+
 /// The number in "0100007F:A5C2" after the colon; 0: there is none.
 std::uint16_t port_in(std::string_view end_point) {
   std::uint16_t port = 0;
@@ -134,8 +152,8 @@ std::optional<ProcessStat> process_stat(pid_t process) {
   std::istringstream rest(text->substr(name_end + 1));
   ProcessStat stat;
   rest >> stat.state;
-  constexpr std::size_t kParent = 4, kGroup = 5, kWaitedUser = 16, kWaitedSystem = 17,
-                        kIgnored = 33;
+  constexpr std::size_t kParent = 4, kGroup = 5, kUser = 14, kSystem = 15, kWaitedUser = 16,
+                        kWaitedSystem = 17, kIgnored = 33;
   std::array<std::string, kIgnored + 1> fields;  // some exceed every integer
   for (std::size_t i = kParent; i <= kIgnored; ++i) rest >> fields[i];
   if (!rest) return std::nullopt;
@@ -143,6 +161,7 @@ std::optional<ProcessStat> process_stat(pid_t process) {
   stat.parent = static_cast<pid_t>(number(kParent));
   stat.group = static_cast<pid_t>(number(kGroup));
   const Duration tick = Duration(std::chrono::seconds(1)) / sysconf(_SC_CLK_TCK);
+  stat.used = tick * (number(kUser) + number(kSystem));
   stat.waited_children = tick * (number(kWaitedUser) + number(kWaitedSystem));
   stat.ignores_child_end = ((number(kIgnored) >> (SIGCHLD - 1)) & 1) != 0;
   return stat;
@@ -181,6 +200,10 @@ bool has_connection(pid_t process, std::uint16_t local_port, std::uint16_t remot
     });
   }
   return false;
+}
+
+Duration used_with_descendants() {
+  return used_by(RUSAGE_SELF) + used_by(RUSAGE_CHILDREN) + used_below(getpid());
 }
 
 void adopt_orphans() {

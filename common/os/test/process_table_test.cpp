@@ -77,6 +77,11 @@ TEST_F(ProcessTable, ShowsWhatAProcessKnowsOfItsChildren) {
   EXPECT_GE(stat->waited_children, std::chrono::milliseconds(80));
   EXPECT_LE(stat->waited_children, std::chrono::milliseconds(200));
   EXPECT_TRUE(stat->ignores_child_end);
+  EXPECT_LE(stat->used, std::chrono::milliseconds(80));
+  const Duration with_child = used_with_descendants();
+  end();
+  EXPECT_GE(with_child, std::chrono::milliseconds(80));
+  EXPECT_GE(used_with_descendants(), std::chrono::milliseconds(80));
 }
 
 // Of this process there is the calling thread, which runs.

@@ -158,7 +158,7 @@ class Coordinator::Impl {
   WallTime started_;      // construction; later, when every SUT had joined
   WallTime flushed_;      // last flush of the record
   Watchdog watchdog_;
-  WallTime next_look_;    // when one is due
+  WallTime next_look_;  // when one is due
   Duration look_period_ = std::chrono::milliseconds(2);
   std::optional<SimTime> fallen_at_;  // a battery is empty: when the run ends
   std::string fall_;                  // the reason

@@ -31,9 +31,8 @@ void SutLooks::add(const ThreadStates& states, Duration represented) {
 }
 
 Duration Coordinator::Impl::until_look() const {
-  if (!running_ || std::ranges::none_of(sessions_, [&](const Session& session) {
-        return is_looked_at(session);
-      }))
+  if (!running_ || std::ranges::none_of(
+                       sessions_, [&](const Session& session) { return is_looked_at(session); }))
     return Duration::max();
   return std::max(next_look_ - host_clock_(), Duration(0));
 }

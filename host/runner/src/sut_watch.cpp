@@ -26,8 +26,7 @@ std::uint16_t port_of(const std::string& address) {
 
 void SutWatch::joined(std::size_t uav, const std::string& address, std::uint32_t process) {
   const auto number = static_cast<pid_t>(process);
-  if (number > 0 && os::has_connection(number, port_of(address), port_))
-    processes_[uav] = number;
+  if (number > 0 && os::has_connection(number, port_of(address), port_)) processes_[uav] = number;
 }
 
 std::optional<coordinator::ThreadStates> SutWatch::states(std::size_t uav) const {

@@ -165,6 +165,7 @@ campaign::TrialResult fly(const TrialSpec& spec, const StartSimulator& start,
       campaign::add_target(result, machine.info, machine.after);
     result.this_run.notes = conducted.notes;
     result.this_run.doubts = conducted.doubts;
+    result.this_run.loads = conducted.loads;
     const auto& notes = inputs.replayed.warnings;
     result.this_run.notes.insert(result.this_run.notes.end(), notes.begin(), notes.end());
     if (const auto work = simulator->get().work())

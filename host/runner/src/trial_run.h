@@ -1,5 +1,6 @@
 #pragma once
 
+#include "machine_watch.h"
 #include "refusals.h"
 #include "replayed_time.h"
 #include "stall_watch.h"
@@ -49,6 +50,7 @@ struct Conducted {
   coordinator::RunReport report;
   std::vector<std::string> notes;
   std::vector<campaign::Doubt> doubts;
+  std::vector<campaign::MachineLoad> loads;
   // Not in the record of a repeatable run.
   std::optional<record::TargetInfo> target;  ///< none if the user starts the SUTs
   record::Readings target_after;
@@ -68,7 +70,7 @@ class TrialRun {
   Conducted conduct();
 
  private:
-  TrialEnd fly();
+  TrialEnd fly(std::optional<MachineWatch>& machine);
   record::Readings read_targets();
   std::vector<campaign::Doubt> doubts(const coordinator::RunReport& report) const;
   std::optional<EarlyStop> early_stop();

@@ -252,7 +252,8 @@ void compute(std::chrono::milliseconds cpu_time) {
            cpu_time);
 }
 
-// In each way for 60 ms. All but the call, and the computing of 60 ms, is hidden from the simulator.
+// In each way for 60 ms. All but the call, and the computing of 60 ms, is hidden from the
+// simulator.
 int wait_in_every_way(Vehicle& v) {
   std::condition_variable never;
   std::mutex mutex;

@@ -54,7 +54,7 @@ struct Hello {
   bool concurrent = false;
   /// Of a scripted clock: the ET of each phase of computing. 0: another clock, or not known.
   Duration computing{0};
-  std::string build_id{};  ///< of the program, in hexadecimal digits; empty: it has none
+  std::string build_id{};     ///< of the program, in hexadecimal digits; empty: it has none
   std::uint32_t process = 0;  ///< as the SUT's machine numbers it; 0: not known
 };
 

@@ -15,6 +15,7 @@ struct ProcessStat {
   char state = '?';  ///< 'R', 'S', 'T' …; 'Z': has ended, 'X': has ended and was waited for
   pid_t parent = 0;
   pid_t group = 0;
+  Duration used{0};  ///< CPU time of its own threads, in ticks as the next
   /// CPU time of the children for which it has waited, and of those for which they had; rounded
   /// down to the kernel's ticks (10 ms), user and system time each.
   Duration waited_children{0};
@@ -45,6 +46,10 @@ ThreadStates thread_states(pid_t process, std::string_view left_out = {});
 /// Whether `process` has a TCP connection between these ports, as its end sees them. False if this
 /// process may not look.
 bool has_connection(pid_t process, std::uint16_t local_port, std::uint16_t remote_port);
+
+/// CPU time of this process and of all its descendants, living and ended. Short of that of some
+/// descendants by a tick (10 ms).
+Duration used_with_descendants();
 
 /// From now on, descendants of this process whose own parent ends become its children, however
 /// they left their group or session (PR_SET_CHILD_SUBREAPER).

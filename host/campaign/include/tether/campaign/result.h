@@ -159,9 +159,10 @@ std::string_view name(Doubt::Kind kind);
 
 /// How far a machine on which execution time was measured was from idle and even during a run.
 struct MachineLoad {
-  std::string machine;        ///< as TargetReport::name
+  std::string machine;        ///< "host", or the name of a board
   double block_spread = 0.0;  ///< of a fixed block of work: longest over shortest time, less 1
-  double others = 0.0;  ///< share of its processors' time for other programs and virtual machines
+  double others = 0.0;  ///< share of its processors' time that other programs and other virtual
+                        ///< machines took; 0 also if the user started programs of the run
 
   friend bool operator==(const MachineLoad&, const MachineLoad&) = default;
 };
