@@ -7,6 +7,7 @@
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
 #include <pthread.h>
+#include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -89,7 +90,10 @@ TEST_F(ProcessTable, CountsTheThreadsOfAProcessAndItsDescendantsByState) {
   const ThreadStates alone = thread_states(getpid());
   EXPECT_EQ(alone.runnable, 1);
   stopped_child([] {
-    if (fork() == 0) pause();
+    if (fork() == 0) {
+      prctl(PR_SET_PDEATHSIG, SIGKILL);
+      pause();
+    }
     const pid_t ended = fork();
     if (ended == 0) _exit(0);
     siginfo_t info{};

@@ -38,7 +38,7 @@ Duration Coordinator::Impl::until_look() const {
 }
 
 bool Coordinator::Impl::is_looked_at(const Session& session) const {
-  return hooks_.threads_of && is_synchronised() && is_computing(session) &&
+  return hooks_.threads_of && is_synchronised() && is_computing(session) && !session.is_hidden &&
          !session.is_concurrent() && session.hello.clock != link::ClockKind::kWall &&
          session.hello.clock != link::ClockKind::kUnstamped;
 }
@@ -59,8 +59,9 @@ void Coordinator::Impl::look_at_suts() {
   std::vector<Look> looks;
   for (Session& session : sessions_) {
     if (!is_looked_at(session) || session.computes_since > next_look_) continue;
-    if (const auto states = hooks_.threads_of(session.uav))
-      looks.push_back({session, session.computes_since, *states});
+    const auto states = hooks_.threads_of(session.uav);
+    session.is_hidden = !states;
+    if (states) looks.push_back({session, session.computes_since, *states});
   }
   next_look_ += represented;
   if (looks.empty()) return;

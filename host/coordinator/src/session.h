@@ -71,6 +71,7 @@ struct Session {
   std::uint64_t newest_moved_due = 0;  ///< number of the last Due that was earlier than announced
 
   WallTime computes_since{};  ///< its last reply was sent
+  bool is_hidden = false;     ///< RunHooks::threads_of does not know it
   SutLooks looks;
 
   std::optional<ExecTime> stopped_at;  ///< ET of the last stop in the record
