@@ -65,7 +65,9 @@ void Coordinator::Impl::look_at_suts() {
   }
   next_look_ += represented;
   if (looks.empty()) return;
-  look_period_ = std::clamp(kPeriodPerCost * (host_clock_() - now), kLookPeriod, kLongestPeriod);
+  // One that was interrupted changes little.
+  look_period_ = std::clamp(kPeriodPerCost * (host_clock_() - now), kLookPeriod,
+                            std::min(2 * look_period_, kLongestPeriod));
   for (int i = 0; i < kMostPolls && !ended_; ++i) {
     const auto events = server_->poll(Duration(0));
     if (events.empty()) break;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <utility>
 
+#include <tether/board/target_readings.h>
 #include <tether/os/clock.h>
 #include <tether/os/process_table.h>
 
@@ -81,6 +82,12 @@ campaign::MachineLoad MachineWatch::load(bool knows_programs) {
   return {.machine = "host",
           .block_spread = to_seconds(longest) / to_seconds(std::max(shortest, Duration(1))) - 1.0,
           .others = knows_programs ? others_ : 0.0};
+}
+
+std::optional<campaign::MachineLoad> load_of_board(const campaign::TargetReport& target) {
+  const auto share = board::contended_share(target.before, target.after);
+  if (target.address.empty() || !share) return std::nullopt;
+  return campaign::MachineLoad{.machine = target.name, .block_spread = 0.0, .others = *share};
 }
 
 std::optional<campaign::Doubt> doubt_of(const campaign::MachineLoad& load) {

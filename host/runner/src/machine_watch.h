@@ -39,6 +39,9 @@ class MachineWatch {
   double others_ = 0.0;
 };
 
+/// Of a board, from its readings. None: this is the host, or the board does not tell.
+std::optional<campaign::MachineLoad> load_of_board(const campaign::TargetReport& target);
+
 /// None: the machine was idle and even enough.
 std::optional<campaign::Doubt> doubt_of(const campaign::MachineLoad& load);
 

@@ -67,6 +67,16 @@ TEST_F(Machine, IsUnevenIfABlockTakesATenthLongerAtOneEnd) {
   EXPECT_NEAR(doubt_of(uneven)->amount, uneven.block_spread, 1e-9);
 }
 
+TEST(BoardLoad, IsReadFromItsReadings) {
+  campaign::TargetReport target{.name = "pi",
+                                .address = "ssh://pi",
+                                .before = {{"uptime_s", "10"}, {"cpu_wait_us", "0"}},
+                                .after = {{"uptime_s", "20"}, {"cpu_wait_us", "1500000"}}};
+  EXPECT_EQ(load_of_board(target), (campaign::MachineLoad{"pi", 0.0, 0.15}));
+  target.address = "";
+  EXPECT_FALSE(load_of_board(target));
+}
+
 TEST_F(Machine, IsReadInTheTimeOfTheClock) {
   for (const clockid_t clock : {CLOCK_THREAD_CPUTIME_ID, CLOCK_MONOTONIC}) {
     const MachineReader reader = machine_reader(clock);
