@@ -183,7 +183,7 @@ Content write(FlatBufferBuilder& b, const Hello& hello, ImageSlot&) {
   return {wire::Content::Hello,
           wire::CreateHello(b, hello.protocol_version, sut, uav,
                             static_cast<wire::ClockKind>(hello.clock), hello.cpu_factor, token,
-                            hello.concurrent, hello.computing.count(), build_id)
+                            hello.concurrent, hello.computing.count(), build_id, hello.process)
               .Union()};
 }
 Content write(FlatBufferBuilder& b, const Welcome& welcome, ImageSlot&) {

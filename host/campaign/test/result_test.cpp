@@ -37,6 +37,7 @@ TEST_F(Result, ReadsBackWithEverythingMissing) {
   failed.this_run.notes = {"a SUT was stopped", "this machine was suspended"};
   failed.this_run.doubts = {{Doubt::Kind::kUnseenWait, "uav1", 4.9},
                             {Doubt::Kind::kBusyMachine, "pi", 0.3}};
+  failed.this_run.loads = {{"pi", 0.3, 0.0}};
   failed.this_run.sut_files = {"flight.csv", "pictures/1.png"};
   failed.this_run.node = "n1";
   failed.this_run.size_arguments = {"face_anchor", "--condition", "target, counted"};

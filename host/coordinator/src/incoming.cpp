@@ -127,6 +127,7 @@ void Coordinator::Impl::join(link::PeerId peer, const link::Hello& hello) {
   session.hello = hello;
   session.hello.token.clear();
   session.hello.sut = printable(hello.sut);
+  if (hooks_.on_joined) hooks_.on_joined(session.uav, remote_[peer], hello.process);
   watchdog_.moved(host_clock_());
   if (joined_.size() == sessions_.size()) start();
 }
