@@ -138,7 +138,8 @@ Json json_of(const Warning& warning) {
               {"file", warning.where.file},
               {"line", warning.where.line},
               {"subject", warning.subject},
-              {"message", warning.message}};
+              {"message", warning.message},
+              {"can_change_verdict", warning.can_change_verdict}};
 }
 
 template <class T>
@@ -286,7 +287,10 @@ Warning read_warning(const JsonReader& json) {
   return {*consequence,
           {json.text("file"), static_cast<int>(std::min(json.count("line"), kMostLines))},
           json.text("subject"),
-          json.text("message")};
+          json.text("message"),
+          // Results of earlier releases have none.
+          json.has("can_change_verdict") ? json.boolean("can_change_verdict")
+                                         : usually_changes_verdict(*consequence)};
 }
 
 ReplayReport read_replay(const JsonReader& json) {
