@@ -373,6 +373,7 @@ std::string to_json(const TrialResult& result) {
                    {"sync", json_of(result.sync)},
                    {"contacts", json_of(result.contacts)},
                    {"audit", json_of(result.audit)}});
+  if (!result.flight_digest.empty()) json["flight_digest"] = result.flight_digest;
   if (!result.tasks.empty()) json["tasks"] = json_of(result.tasks);
   if (!result.clauses.empty()) json["clauses"] = json_of(result.clauses);
   if (!result.energy.empty()) json["energy"] = json_of(result.energy);
@@ -400,6 +401,7 @@ TrialResult result_from_json(const std::string& text, const std::filesystem::pat
       result.energy.push_back(read_energy(energy));
   for (const JsonReader& sut : json.objects("suts")) result.suts.push_back(read_sut(sut));
   result.sync = read_sync(json.object("sync"));
+  if (json.has("flight_digest")) result.flight_digest = json.text("flight_digest");
   if (json.has("contacts"))
     for (const JsonReader& own : json.objects("contacts"))
       result.contacts.push_back(read_contacts(own));

@@ -338,6 +338,9 @@ TEST_F(MakeResult, MissesTheGoalBeyondALimit) {
   EXPECT_EQ(make(record, kReached).outcome, Outcome::kGoalMissed);
   EXPECT_EQ(exit_code(make(record, kReached).outcome), 1);
   EXPECT_EQ(make(record, kReached).reason, "time_required is 31 s, beyond its limit of 30 s");
+  record.interactions[0].message.request_at = ExecTime(seconds(30) + std::chrono::nanoseconds(1));
+  EXPECT_EQ(make(record, kReached).reason,
+            "time_required is 30.000000001 s, beyond its limit of 30 s");
   record.interactions.clear();
   EXPECT_THAT(make(record, kReached).reason, HasSubstr("no time_required: "));
   record = finished_record();

@@ -86,6 +86,13 @@ std::string contacts_part(const record::Record& record) {
   return title + to_html(table, "Contacts");
 }
 
+std::string metrics_part(const campaign::TrialResult& trial) {
+  Table metrics = run_table(trial);
+  metrics.title.clear();
+  std::erase(metrics.notes, trial.reason + ".");  // outcome_sentences has it
+  return element("h2", "Metrics and limits") + to_html(metrics, "Metrics and limits");
+}
+
 std::string mission_part(const campaign::TrialResult& trial) {
   Table table = clauses_table(trial);
   if (table.rows.empty()) return "";
@@ -191,11 +198,8 @@ std::string run_page(const std::filesystem::path& folder) {
   const std::vector<Verdict> verdicts = verdicts_of(results, folder);
   body += answer_html(verdicts) + verdict_picture_html({verdicts});
   body += element("p", outcome_sentences(trial)) + "\n" + problems_box(problems(results));
-  body += element("h2", "Metrics and limits");
-  Table metrics = run_table(trial);
-  metrics.title.clear();
-  std::erase(metrics.notes, trial.reason + ".");  // outcome_sentences has it
-  body += to_html(metrics, "Metrics and limits") + mission_part(trial);
+  if (trial.outcome != campaign::Outcome::kFailed)
+    body += metrics_part(trial) + mission_part(trial);
   if (const Table stages = stages_table(verdicts); !stages.rows.empty())
     body += element("h2", "Where the time goes") + to_html(stages);
   if (const Table energy = energy_table(trial); !energy.rows.empty()) body += to_html(energy);

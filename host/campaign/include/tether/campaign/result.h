@@ -234,6 +234,8 @@ struct TrialResult {
   std::vector<UavEnergy> energy{};  ///< of each UAV with a model of energy
   std::vector<SutResult> suts;
   SyncFigures sync;
+  /// See copies.h; empty: there is no ground truth, or the result is of an earlier version.
+  std::string flight_digest{};
   /// Of each UAV; empty: the trial did not run, or the result is of an earlier version.
   std::vector<UavContacts> contacts;
   std::optional<AuditVerdict> audit;
