@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <tether/base/printable.h>
 #include <tether/campaign/campaign_plan.h>
 #include <tether/report/size_report.h>
 
@@ -41,8 +42,8 @@ std::string than(double slowdown) {
 Answer main_answer(const SizeReport& report) {
   const SizedCondition& sized = report.synchronised;
   const sizing::Threshold& threshold = sized.answer.threshold;
-  const std::string evidence =
-      fmt::format("{}; {} flights.", percent(report.question.confidence), sized.flights.size());
+  const std::string evidence = fmt::format("{}; {}.", percent(report.question.confidence),
+                                           counted(sized.flights.size(), "flight"));
   if (sized.answer.is_below)
     return {"Not sufficient",
             fmt::format(": already at {} × the time of “{}”, fewer than {} of the flights reach "
@@ -119,14 +120,14 @@ std::vector<Answer> size_answers(const SizeReport& report) {
          "answer is by neighbourhoods of slowdowns: the interval is from the largest one that is "
          "sufficient to the smallest one that is not."});
   if (!answer.is_narrow)
-    answers.push_back(
-        {"Less sure than asked",
-         fmt::format(
-             ": the interval is wider than a factor of {}, because {}.",
-             digits(report.question.interval),
-             report.synchronised.flights.size() + report.not_flown.size() >= report.most_flights
-                 ? fmt::format("{} flights are the most that were allowed", report.most_flights)
-                 : "slowdowns in between could not be decided")});
+    answers.push_back({"Less sure than asked",
+                       fmt::format(": the interval is wider than a factor of {}, because {}.",
+                                   digits(report.question.interval),
+                                   report.synchronised.flights.size() + report.not_flown.size() >=
+                                           report.most_flights
+                                       ? fmt::format("no more than {} were allowed",
+                                                     counted(report.most_flights, "flight"))
+                                       : "slowdowns in between could not be decided")});
   std::vector<const campaign::TrialResult*> trials;
   for (const campaign::TrialResult& trial : report.synchronised.trials) trials.push_back(&trial);
   std::ranges::move(answers_on_flights(trials, report.pace.unreadable),

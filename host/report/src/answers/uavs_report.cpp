@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <tether/base/printable.h>
 #include <tether/campaign/campaign_plan.h>
 #include <tether/os/shell_word.h>
 #include <tether/report/uavs_report.h>
@@ -88,10 +89,9 @@ std::size_t flights_of(const UavsReport& report) {
 std::vector<Answer> uavs_answers(const UavsReport& report) {
   std::vector<Answer> answers = {
       {lead_of(report),
-       fmt::format(" (“{}” under “{}”, {} of the flights wanted): {}; {}; {} flights.",
-                   report.board, report.condition, in_percent(report.question.success),
-                   evidence_of(report), in_percent(report.question.confidence),
-                   flights_of(report))}};
+       fmt::format(" (“{}” under “{}”, {} of the flights wanted): {}; {}; {}.", report.board,
+                   report.condition, in_percent(report.question.success), evidence_of(report),
+                   in_percent(report.question.confidence), counted(flights_of(report), "flight"))}};
   if (const auto& pace = report.pace.pace;
       pace && !pace->shared_board.empty() && !pace->camera.empty())
     answers.push_back(
@@ -101,7 +101,7 @@ std::vector<Answer> uavs_answers(const UavsReport& report) {
   if (!report.answer.is_decided())
     answers.push_back(
         {"Less sure than asked",
-         fmt::format(": {} flights are the most that were allowed.", report.most_flights)});
+         fmt::format(": no more than {} were allowed.", counted(report.most_flights, "flight"))});
   std::vector<const campaign::TrialResult*> trials;
   for (const UavsPoint& point : report.points)
     for (const campaign::TrialResult& trial : point.trials) trials.push_back(&trial);
