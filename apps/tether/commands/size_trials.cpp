@@ -16,8 +16,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <tether/base/counted.h>
 #include <tether/base/error.h>
-#include <tether/base/printable.h>
 #include <tether/os/program.h>
 #include <tether/os/terminal.h>
 #include <tether/os/text_file.h>

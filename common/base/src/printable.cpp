@@ -22,8 +22,4 @@ std::string printable(const std::string& text) {
   return begin == std::string::npos ? "" : out.substr(begin, end - begin + 1);
 }
 
-std::string counted(std::size_t count, std::string_view noun) {
-  return std::to_string(count) + " " + std::string(noun) + (count == 1 ? "" : "s");
-}
-
 }  // namespace tether

@@ -20,11 +20,5 @@ TEST(Printable, KeepsTextAndReplacesControlCharacters) {
   for (const auto& [text, expected] : cases) EXPECT_EQ(printable(text), expected);
 }
 
-TEST(Counted, IsSingularForOne) {
-  EXPECT_EQ(counted(0, "flight"), "0 flights");
-  EXPECT_EQ(counted(1, "flight"), "1 flight");
-  EXPECT_EQ(counted(2, "flight"), "2 flights");
-}
-
 }  // namespace
 }  // namespace tether

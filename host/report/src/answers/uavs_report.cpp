@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include <tether/base/printable.h>
+#include <tether/base/counted.h>
 #include <tether/campaign/campaign_plan.h>
 #include <tether/os/shell_word.h>
 #include <tether/report/uavs_report.h>

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include <tether/base/printable.h>
+#include <tether/base/counted.h>
 #include <tether/report/uavs_report.h>
 
 namespace tether::report {
