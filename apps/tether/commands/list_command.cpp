@@ -1,4 +1,5 @@
 #include "commands/commands.h"
+#include "terminal/print.h"
 
 #include <algorithm>
 #include <array>
@@ -33,11 +34,11 @@ int list_shipped(const ListOptions&, const std::stop_token&) {
     for (const ShippedFile& file : files) {
       std::string text = file.description;
       if (!text.empty()) text.front() = static_cast<char>(std::toupper(text.front()));
-      fmt::print("  {:<{}}  {}\n", file.name, width, text);
+      print(fmt::format("  {:<{}}  {}\n", file.name, width, text));
     }
     gap = "\n";
   }
-  fmt::print("\nThe files are in {}. Copy one to change it.\n", shipped.folder().string());
+  print(fmt::format("\nThe files are in {}. Copy one to change it.\n", shipped.folder().string()));
   return 0;
 }
 

@@ -156,7 +156,7 @@ Table stages_table(const std::string& condition, const Pace& pace);
 /// The verdicts of each scenario, the points of a sweep together.
 std::vector<std::vector<Verdict>> by_scenario(std::vector<Verdict> verdicts);
 
-enum class Markup { kPlain, kMarkdown };
+enum class Markup { kPlain, kMarkdown, kTerminal };  ///< of a terminal: plain, with colours
 /// Answers and advice as lines, with a line that is empty at the end.
 std::string answer_text(const std::vector<Answer>& answers, const std::vector<std::string>& advice,
                         Markup markup);
