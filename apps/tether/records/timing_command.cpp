@@ -70,6 +70,20 @@ void add_counted(timing::Timing& timing, const std::vector<fs::path>& files) {
                             "that was measured.",
                             counted.build_id, timing.build_id))
         .about("--counted");
+  // Libraries can be those of another machine's system.
+  const auto own_parts = [](timing::Build build) {
+    std::erase_if(build, [](const auto& part) { return part.name.starts_with("library "); });
+    return build;
+  };
+  for (const auto& [uav, build] : counted.builds)
+    if (const auto measured = timing.builds.find(uav); measured != timing.builds.end())
+      if (const auto other = timing::difference(own_parts(measured->second), own_parts(build)))
+        throw Error(
+            ErrorCode::kBadFile, {files.front().string()},
+            fmt::format("is of another program of UAV \"{}\": {}. Count the program that was "
+                        "measured.",
+                        uav, *other))
+            .about("--counted");
   for (const auto& [stage, times_ns] : timing::samples_of(counted))
     timing.counted_ns[stage] = stats::mean(times_ns);
 }
