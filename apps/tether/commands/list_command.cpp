@@ -1,4 +1,5 @@
 #include "commands/commands.h"
+#include "terminal/print.h"
 
 #include <algorithm>
 #include <cctype>
@@ -30,15 +31,14 @@ int list_shipped(const ListOptions&, const std::stop_token&) {
     for (const ShippedFile& file : files) {
       std::string text = file.description;
       if (!text.empty()) text.front() = static_cast<char>(std::toupper(text.front()));
-      fmt::print("  {:<{}}  {}\n", file.name, width, text);
+      print(fmt::format("  {:<{}}  {}\n", file.name, width, text));
     }
     gap = "\n";
   }
-  fmt::print(
+  print(fmt::format(
       "\nThe files are in {}. Scenarios and campaigns can name them as listed here: world = "
-      "\"room\".\n"
-      "Copy a file to change it, and give the copy another name.\n",
-      shipped.folder().string());
+      "\"room\". Copy a file to change it, and give the copy another name.\n",
+      shipped.folder().string()));
   return 0;
 }
 

@@ -204,17 +204,15 @@ Digests& digests() {
   return all;
 }
 
-std::string read_digest(const std::filesystem::path& file) {
-  std::uint64_t hash = 0xcbf29ce484222325u;
-  for (const char c : read_file(file)) {
-    hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
-  }
-  char text[17];
-  std::snprintf(text, sizeof text, "%016" PRIx64, hash);
-  return text;
-}
-
 }  // namespace
+
+std::string digest_of(std::string_view text) {
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+  char digits[17];
+  std::snprintf(digits, sizeof digits, "%016" PRIx64, hash);
+  return digits;
+}
 
 std::string digest_of_file(const std::filesystem::path& file) {
   const std::optional<Version> version = version_of(file);
@@ -224,7 +222,7 @@ std::string digest_of_file(const std::filesystem::path& file) {
     if (found != digests().known.end() && found->second.first == version)
       return found->second.second;
   }
-  std::string digest = read_digest(file);
+  std::string digest = digest_of(read_file(file));
   if (version && is_settled(*version)) {
     const std::lock_guard lock(digests().mutex);
     digests().known[file] = {*version, digest};

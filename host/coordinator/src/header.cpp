@@ -7,6 +7,8 @@
 #include <tuple>
 #include <utility>
 
+#include <tether/base/printable.h>
+
 /// The header of a run's record: everything that its numbers depend on.
 namespace tether::coordinator {
 
@@ -42,6 +44,13 @@ record::CameraInfo describe(const uav::Pose& X_BS, const uav::CameraProperties& 
           .depth_min_m = camera.min_m,
           .depth_max_m = camera.max_m,
           .models = camera.models};
+}
+
+std::vector<record::BuildPart> parts_of(const link::Hello& hello) {
+  std::vector<record::BuildPart> parts;
+  for (const link::BuildPart& part : hello.build)
+    parts.push_back({printable(part.name), printable(part.value)});
+  return parts;
 }
 
 record::SensorInfo describe(const std::string& uav, const uav::SensorDescription& sensor,
@@ -123,6 +132,7 @@ record::Header Coordinator::Impl::make_header() const {
          .computing = session.hello.computing,
          .required_clock = {},
          .build_id = session.hello.build_id,
+         .build = parts_of(session.hello),
          .replay = options_.uavs[session.uav].replayed_from,
          .computer = options_.uavs[session.uav].computer,
          .extent_m = extent_m(uav.body),

@@ -80,7 +80,8 @@ TEST(Demo, FliesTheTableOfTheReadme) {
              substituted(read_text(TETHER_SOURCE_DIR "/data/campaigns/demo.toml"),
                          {{", \"target, no sync\"]", "]"}}));
   const Output flown =
-      run(tether({"campaign", folder / "demo.toml", "--out", folder / "out", "--jobs", "2"}),
+      run(with(tether({"campaign", folder / "demo.toml", "--out", folder / "out", "--jobs", "2"}),
+               {}, {{"COLUMNS", "200"}}),
           std::chrono::minutes(9));
   ASSERT_EQ(flown.code, 0) << flown.err;
   const std::size_t table = flown.out.find("Table III");

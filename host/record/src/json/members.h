@@ -226,6 +226,11 @@ void members(auto& io, Maybe<EnergyInfo> auto& m) {
   io("sensors_w", m.sensors_W);
 }
 
+void members(auto& io, Maybe<BuildPart> auto& m) {
+  io("name", m.name);
+  io("value", m.value);
+}
+
 void members(auto& io, Maybe<SutInfo> auto& m) {
   constexpr int kMostCores = 1024;
   io("uav", m.uav);
@@ -242,6 +247,7 @@ void members(auto& io, Maybe<SutInfo> auto& m) {
     io.object("required_clock",
               [&](auto& clock) { members(clock, io.value_of(m.required_clock)); });
   if (io.has("build_id", !m.build_id.empty())) io("build_id", m.build_id);
+  if (io.has("build", !m.build.empty())) io.list("build", m.build);
   if (io.has("replay", m.replay.has_value()))
     io.object("replay", [&](auto& replay) { members(replay, io.value_of(m.replay)); });
   if (io.has("computer", !m.computer.empty())) io("computer", m.computer);

@@ -321,6 +321,14 @@ struct EnergyInfo {
 
   friend bool operator==(const EnergyInfo&, const EnergyInfo&) = default;
 };
+/// One of the things besides the program's own code that decide what it computes, see
+/// link::BuildPart.
+struct BuildPart {
+  std::string name;
+  std::string value;
+
+  friend bool operator==(const BuildPart&, const BuildPart&) = default;
+};
 struct SutInfo {
   std::string uav;
   std::string sut;              ///< name and version that the SUT reported
@@ -337,6 +345,7 @@ struct SutInfo {
   /// The clock of the condition; the SUT announced the one above. None in records of Tether 0.1.0.
   std::optional<ClockInfo> required_clock{};
   std::string build_id{};              ///< of the program; empty: it has none
+  std::vector<BuildPart> build{};      ///< empty in records of Tether 0.1.0: not known
   std::optional<ReplayInfo> replay{};  ///< clock "replayed"
   std::string board{};  ///< Header::boards: the computer that it shares; empty: one of its own
   std::optional<int> pinned_core{};  ///< of that computer; only pinned programs run there
