@@ -131,8 +131,8 @@ std::string distinct_text(double value, double other, int digits) {
   constexpr int kAll = 17;
   const auto text = [&](double number) {
     char buffer[40];
-    const auto [end, error] = std::to_chars(buffer, buffer + sizeof buffer, number,
-                                            std::chars_format::general, digits);
+    const auto [end, error] =
+        std::to_chars(buffer, buffer + sizeof buffer, number, std::chars_format::general, digits);
     return std::string(buffer, end);
   };
   while (value != other && digits < kAll && text(value) == text(other)) ++digits;

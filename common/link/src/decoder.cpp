@@ -196,8 +196,8 @@ Result<Message> read(const wire::Hello& hello) {
   return Message(Hello{hello.protocol_version(), hello.sut()->str(), hello.uav()->str(),
                        static_cast<ClockKind>(hello.clock()), hello.cpu_factor(),
                        hello.token()->str(), hello.concurrent(), Duration(hello.computing_ns()),
-                       hello.build_id() != nullptr ? hello.build_id()->str() : "",
-                       hello.process(), std::move(build)});
+                       hello.build_id() != nullptr ? hello.build_id()->str() : "", hello.process(),
+                       std::move(build)});
 }
 Result<Message> read(const wire::Refusal& refusal) {
   return Message(Refusal{static_cast<Refusal::Reason>(refusal.reason()), refusal.message()->str()});

@@ -87,10 +87,9 @@ TEST_F(Suts, NoteAnExitCodeThatContradictsTheReportedGoal) {
     one.finish.emplace().reached_goal = reached;
     return one;
   };
-  EXPECT_THAT(
-      suts_.await_exit({report("uav1", false), report("uav2", true), report("uav3", true)}),
-      ElementsAre(AllOf(HasSubstr("after it had finished: "), HasSubstr(""uav2""),
-                        HasSubstr("exited with code 1"))));
+  EXPECT_THAT(suts_.await_exit({report("uav1", false), report("uav2", true), report("uav3", true)}),
+              ElementsAre(AllOf(HasSubstr("after it had finished: "), HasSubstr("" uav2 ""),
+                                HasSubstr("exited with code 1"))));
 }
 
 TEST_F(Suts, RepeatNoReasonThatTheyHaveReported) {

@@ -46,9 +46,8 @@ std::string than(double slowdown) {
 Answer main_answer(const SizeReport& report) {
   const SizedCondition& sized = report.synchronised;
   const sizing::Threshold& threshold = sized.answer.threshold;
-  const std::string evidence =
-      fmt::format("{}; {}.", percent(report.question.confidence),
-                  counted(sized.flights.size(), "flight"));
+  const std::string evidence = fmt::format("{}; {}.", percent(report.question.confidence),
+                                           counted(sized.flights.size(), "flight"));
   if (sized.answer.is_below) {
     const bool is_for_speed = speed_matters(sized);
     return {is_for_speed ? "Not sufficient" : "Goal missed",
@@ -138,15 +137,14 @@ std::vector<Answer> size_answers(const SizeReport& report) {
   if (!answer.is_narrow)
     answers.push_back(
         {"Less sure than asked",
-         fmt::format(
-             ": the interval is wider than a factor of {}, because {}.",
-             digits(report.question.interval),
-             copies >= kMostCopies ? "the seeds change too little"
-             : report.synchronised.flights.size() + copies + report.not_flown.size() >=
-                     report.most_flights
-                 ? fmt::format("no more than {} were allowed",
-                               counted(report.most_flights, "flight"))
-                 : "slowdowns in between could not be decided")});
+         fmt::format(": the interval is wider than a factor of {}, because {}.",
+                     digits(report.question.interval),
+                     copies >= kMostCopies ? "the seeds change too little"
+                     : report.synchronised.flights.size() + copies + report.not_flown.size() >=
+                             report.most_flights
+                         ? fmt::format("no more than {} were allowed",
+                                       counted(report.most_flights, "flight"))
+                         : "slowdowns in between could not be decided")});
   if (copies > 0)
     answers.push_back({"Not counted", fmt::format(": {} more, each a copy of one at the same "
                                                   "slowdown, because its seed changes nothing.",

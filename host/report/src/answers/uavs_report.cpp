@@ -104,11 +104,10 @@ std::vector<Answer> uavs_answers(const UavsReport& report) {
   const std::size_t copies = copies_in(report);
   if (!report.answer.is_decided())
     answers.push_back(
-        {"Less sure than asked",
-         copies >= kMostCopies
-             ? ": the seeds change too little."
-             : fmt::format(": no more than {} were allowed.",
-                           counted(report.most_flights, "flight"))});
+        {"Less sure than asked", copies >= kMostCopies
+                                     ? ": the seeds change too little."
+                                     : fmt::format(": no more than {} were allowed.",
+                                                   counted(report.most_flights, "flight"))});
   if (copies > 0)
     answers.push_back({"Not counted", fmt::format(": {}, each a copy of another one, because its "
                                                   "seed changes nothing.",
