@@ -180,11 +180,18 @@ Content write(FlatBufferBuilder& b, const Hello& hello, ImageSlot&) {
   const auto uav = b.CreateString(hello.uav);
   const auto token = b.CreateString(hello.token);
   const auto build_id = hello.build_id.empty() ? 0 : b.CreateString(hello.build_id);
-  return {wire::Content::Hello,
-          wire::CreateHello(b, hello.protocol_version, sut, uav,
-                            static_cast<wire::ClockKind>(hello.clock), hello.cpu_factor, token,
-                            hello.concurrent, hello.computing.count(), build_id)
-              .Union()};
+  std::vector<Offset<wire::BuildPart>> parts;
+  for (const BuildPart& part : hello.build) {
+    const auto name = b.CreateString(part.name);
+    parts.push_back(wire::CreateBuildPart(b, name, b.CreateString(part.value)));
+  }
+  const auto build = parts.empty() ? 0 : b.CreateVector(parts);
+  return {
+      wire::Content::Hello,
+      wire::CreateHello(b, hello.protocol_version, sut, uav,
+                        static_cast<wire::ClockKind>(hello.clock), hello.cpu_factor, token,
+                        hello.concurrent, hello.computing.count(), build_id, hello.process, build)
+          .Union()};
 }
 Content write(FlatBufferBuilder& b, const Welcome& welcome, ImageSlot&) {
   const auto catalogue = write(b, welcome.catalogue);

@@ -114,6 +114,11 @@ void check(Checker& c, const Hello& hello) {
   c.text(hello.build_id, kMaxBuildIdBytes, "build_id");
   c.require(hello.build_id.find_first_not_of("0123456789abcdef") == std::string::npos, "build_id",
             "is not a number in lower-case hexadecimal digits");
+  c.require(hello.build.size() <= kMaxBuildParts, "build", "has too many parts");
+  for (const BuildPart& part : hello.build) {
+    c.text(part.name, kMaxNameBytes, "build");
+    c.text(part.value, kMaxNameBytes, "build");
+  }
 }
 
 void check(Checker& c, const std::vector<StageTime>& times, std::string_view field) {

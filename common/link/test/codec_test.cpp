@@ -48,11 +48,23 @@ T decoded(const T& message) {
 
 // A field that both encoder and decoder left out would survive the round trip above.
 TEST(Codec, HelloRequestAndReplyFieldByField) {
-  const auto [version, sut, uav, clock, factor, token, concurrent, computing, build_id] =
-      decoded(Hello{9, "sut 1.2", "uav0", ClockKind::kCpu, 2.5, "secret", true, Duration(7), "0a"});
+  const auto [version, sut, uav, clock, factor, token, concurrent, computing, build_id, process,
+              build] = decoded(Hello{9,
+                                     "sut 1.2",
+                                     "uav0",
+                                     ClockKind::kCpu,
+                                     2.5,
+                                     "secret",
+                                     true,
+                                     Duration(7),
+                                     "0a",
+                                     4'000'000'000,
+                                     {{"argument 1", "3"}, {"library l.so", "0b"}}});
   EXPECT_EQ(
-      std::tie(version, sut, uav, clock, factor, token, concurrent, computing, build_id),
-      std::tuple(9u, "sut 1.2", "uav0", ClockKind::kCpu, 2.5, "secret", true, Duration(7), "0a"));
+      std::tie(version, sut, uav, clock, factor, token, concurrent, computing, build_id, process),
+      std::tuple(9u, "sut 1.2", "uav0", ClockKind::kCpu, 2.5, "secret", true, Duration(7), "0a",
+                 4'000'000'000u));
+  EXPECT_EQ(build, (std::vector<BuildPart>{{"argument 1", "3"}, {"library l.so", "0b"}}));
 
   const uav::VelocityCommand velocity{{1.0, -2.0, 0.5}, 0.25};
   const std::vector<StageTime> stages{{"detect", Duration(9)}};

@@ -142,7 +142,9 @@ RunReport Coordinator::Impl::run(link::Server& server, const RunHooks& hooks) {
 void Coordinator::Impl::turn() {
   const bool moved = running_ && advance();
   const Duration wait = pace_ ? std::min(kIdleWait, pace_->wait_for(grid().dt())) : kIdleWait;
-  for (const link::Event& event : server_->poll(moved ? Duration(0) : wait)) on_event(event);
+  for (const link::Event& event : server_->poll(moved ? Duration(0) : std::min(wait, until_look())))
+    on_event(event);
+  look_at_suts();
 }
 
 // Called when every SUT has joined. ST and every ET begin at 0.
@@ -167,6 +169,8 @@ void Coordinator::Impl::start() {
   }
   stepper_.act();
   log_.race_again();
+  next_look_ = started_;
+  for (Session& session : sessions_) session.computes_since = started_;
   for (const Session& session : sessions_)
     server_->send(
         session.peer,
@@ -375,7 +379,8 @@ RunReport Coordinator::Impl::close_run() {
     report.suts.push_back({.uav = session.uav_name,
                            .sut = session.hello.sut,
                            .finish = session.finish,
-                           .et = running_ ? barrier_.bound(session.uav) : ExecTime{}});
+                           .et = running_ ? barrier_.bound(session.uav) : ExecTime{},
+                           .looks = session.looks});
   }
   if (!running_) return report;
 

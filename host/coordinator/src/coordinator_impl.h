@@ -29,6 +29,7 @@ namespace tether::coordinator {
 ///     Watchdog     whether the run takes too long, and who is blocked on whom
 ///     RunLog       what the record has of all this, and in which order
 ///
+/// looks.cpp watches what the threads of SUTs do meanwhile, which nothing else depends on.
 /// A request passes them in this order: it is validated; on a shared board, it waits until its
 /// instant is known (settle_boards); it is planned (accept) and held by the barrier; ST advances to
 /// its reply's timestamp; release_ready sends the reply and logs the interaction. A message between
@@ -63,6 +64,11 @@ class Coordinator::Impl {
   void end(const Ending& ending);
   RunReport close_run();
   RunStatus status(WallTime now) const;
+
+  // Looks.
+  Duration until_look() const;
+  bool is_looked_at(const Session& session) const;
+  void look_at_suts();
 
   // Incoming.
   void on_event(const link::Event& event);
@@ -158,6 +164,8 @@ class Coordinator::Impl {
   WallTime started_;      // construction; later, when every SUT had joined
   WallTime flushed_;      // last flush of the record
   Watchdog watchdog_;
+  WallTime next_look_;  // when one is due
+  Duration look_period_ = std::chrono::milliseconds(2);
   std::optional<SimTime> fallen_at_;  // a battery is empty: when the run ends
   std::string fall_;                  // the reason
   std::optional<Ending> expelled_;    // how the run ends once the other SUTs have finished

@@ -127,6 +127,7 @@ void Coordinator::Impl::join(link::PeerId peer, const link::Hello& hello) {
   session.hello = hello;
   session.hello.token.clear();
   session.hello.sut = printable(hello.sut);
+  if (hooks_.on_joined) hooks_.on_joined(session.uav, remote_[peer], hello.process);
   watchdog_.moved(host_clock_());
   if (joined_.size() == sessions_.size()) start();
 }
@@ -420,6 +421,8 @@ ExecTime Coordinator::Impl::accept_command(Session& session, PendingInteraction&
   const SimTime effect = same_instant(pending.entry.request_at) + session.command_latency;
   pending.entry.effect_at =
       stepper_.command(session.uav, pending.entry.sequence, set.command, effect);
+  const auto& [velocity, yaw_rate] = set.command;
+  pending.entry.command = {velocity.x, velocity.y, velocity.z, yaw_rate};
   pending.entry.grid_error = *pending.entry.effect_at - effect;
   return pending.entry.request_at;
 }

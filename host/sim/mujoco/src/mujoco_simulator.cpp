@@ -95,6 +95,7 @@ class MujocoSimulator final : public Simulator {
     return {now_, dynamics_.body_state(uav)};
   }
 
+  bool moves_by_forces() const override { return true; }
   bool reports_contacts() const override { return true; }
   std::vector<Contact> take_contacts() override { return dynamics_.contacts().take(); }
   std::optional<Clearance> clearance(std::size_t uav) const override {

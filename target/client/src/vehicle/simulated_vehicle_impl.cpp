@@ -45,9 +45,19 @@ SimulatedVehicle::~SimulatedVehicle() {
 
 // --- interactions -------------------------------------------------------------------------------
 
+// Handlers that run while the clock is stopped would compute in no time, so they wait. The program
+// can still be ended and stopped, and fail.
+SimulatedVehicle::Call::Call(SimulatedVehicle& vehicle) {
+  if (vehicle.free_running_ == nullptr)
+    signals_.emplace(std::initializer_list<int>{SIGINT, SIGTERM, SIGQUIT, SIGHUP, SIGTSTP, SIGTTIN,
+                                                SIGTTOU, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGTRAP,
+                                                SIGSYS, SIGABRT});
+  lock_ = std::unique_lock(vehicle.calls_);
+}
+
 Result<link::Reply> SimulatedVehicle::interact(Body body) {
   if (const Status good = usable(); !good) return good.failure();
-  const std::lock_guard lock(calls_);
+  const Call call(*this);
   return interact_alone(std::move(body));
 }
 
@@ -132,14 +142,14 @@ void SimulatedVehicle::close() {
 
 Status SimulatedVehicle::sleep_for(Duration duration) {
   if (const Status good = usable(); !good) return good;
-  const std::lock_guard lock(calls_);
+  const Call call(*this);
   if (const Status good = usable(); !good) return good;  // others were first
   return sleep_alone(add_within_bounds(begin_call(link::Sleep{}), duration), true);
 }
 
 Status SimulatedVehicle::sleep_until(ExecTime until) {
   if (const Status good = usable(); !good) return good;
-  const std::lock_guard lock(calls_);
+  const Call call(*this);
   if (const Status good = usable(); !good) return good;  // others were first
   return sleep_alone(until, false);
 }
@@ -152,7 +162,7 @@ Status SimulatedVehicle::sleep_alone(ExecTime until, bool is_relative) {
 
 Status SimulatedVehicle::annotate(std::string_view topic, std::string_view json) {
   if (const Status good = usable(); !good) return good;
-  const std::lock_guard lock(calls_);
+  const Call call(*this);
   if (const Status good = usable(); !good) return good;  // others were first
   // Under the barrier the clock is stopped. In free-running mode no time is charged.
   const ExecTime at = free_running_ ? clock_->now() : clock_->begin();
@@ -172,7 +182,7 @@ Status SimulatedVehicle::annotate(std::string_view topic, std::string_view json)
 template <class Change>
 Status SimulatedVehicle::change_stage(Change change) {
   if (const Status good = usable(); !good) return good;
-  const std::lock_guard lock(calls_);
+  const Call call(*this);
   if (const Status good = usable(); !good) return good;  // others were first
   if (free_running_) return change(stages_);
   if (source_->computing() > Duration::zero()) {

@@ -3,11 +3,13 @@
 #include "vehicle/simulated_vehicle_impl.h"
 
 #include <chrono>
+#include <csignal>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <pthread.h>
 
 #include <tether/base/random.h>
 #include <tether/client_testing/manual_time_source.h>
@@ -118,6 +120,27 @@ TEST_F(SimulatedVehicleTest, StampsGrowOnlyByComputing) {
     expected += computed + Duration(KeyedRandom({5, 1, i}).bits() % 40'000'000);
     ASSERT_EQ(vehicle_->now(), expected);
   }
+}
+
+namespace {
+ManualTimeSource* g_source = nullptr;
+}
+
+// A handler that runs while the clock is stopped would compute in no time.
+TEST_F(SimulatedVehicleTest, ChargesHandlersOfSignalsThatArriveDuringACall) {
+  g_source = &source_;
+  struct sigaction action {};
+  action.sa_handler = [](int) { g_source->advance(5ms); };
+  struct sigaction before {};
+  ::sigaction(SIGUSR1, &action, &before);
+  const pthread_t caller = ::pthread_self();
+  start([caller](const Request& r) {
+    ::pthread_kill(caller, SIGUSR1);
+    return one(Reply{r.sequence, r.issued_at + Duration(2ms), {}});
+  });
+  ASSERT_TRUE(vehicle_->command_velocity({}).ok());
+  EXPECT_EQ(vehicle_->now(), ExecTime{} + Duration(7ms));
+  ::sigaction(SIGUSR1, &before, nullptr);
 }
 
 TEST_F(SimulatedVehicleTest, SleepsAreInteractions) {

@@ -82,6 +82,9 @@ class Simulator {
   /// At `now()`.
   virtual GroundTruth ground_truth(std::size_t uav) const = 0;
 
+  /// Whether UAVs move by the forces of their rotors, gravity, drag and contacts alone, so that no
+  /// velocity jumps.
+  virtual bool moves_by_forces() const { return false; }
   /// Whether the simulator reports contacts; if not, `take_contacts` returns nothing.
   virtual bool reports_contacts() const = 0;
   /// The contacts of UAVs that began before `now()` and were not taken yet, in the order of time.
