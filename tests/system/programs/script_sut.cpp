@@ -19,7 +19,7 @@ Status do_call(Vehicle& vehicle, const std::string& call, const std::string& val
   if (call == "sleep") return vehicle.sleep_for(milliseconds(value));
   if (call == "send") return vehicle.send(value, {});
   if (call == "turn") return vehicle.command_velocity({{}, std::stod(value)});
-  if (call == "finish") return vehicle.finish(true, "done");
+  if (call == "finish") return vehicle.finish(true, "done", "");
   if (call == "abort") std::abort();
   const auto message = vehicle.receive(milliseconds(value));
   const bool is_good = message || message.failure().kind == tether::Failure::Kind::kNothingYet;
