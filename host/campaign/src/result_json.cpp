@@ -138,7 +138,8 @@ Json json_of(const Warning& warning) {
               {"file", warning.where.file},
               {"line", warning.where.line},
               {"subject", warning.subject},
-              {"message", warning.message}};
+              {"message", warning.message},
+              {"can_change_verdict", warning.can_change_verdict}};
 }
 
 template <class T>
@@ -286,7 +287,10 @@ Warning read_warning(const JsonReader& json) {
   return {*consequence,
           {json.text("file"), static_cast<int>(std::min(json.count("line"), kMostLines))},
           json.text("subject"),
-          json.text("message")};
+          json.text("message"),
+          // Results of earlier releases have none.
+          json.has("can_change_verdict") ? json.boolean("can_change_verdict")
+                                         : usually_changes_verdict(*consequence)};
 }
 
 ReplayReport read_replay(const JsonReader& json) {
@@ -318,6 +322,7 @@ void read_trial(const JsonReader& json, TrialResult& result) {
   result.cpu_factor = json.number("cpu_factor");
   if (result.clock == kScripted) result.computing = json.seconds("computing_s");
   result.real_time_factor = json.number("real_time_factor");
+  if (json.has("step_s")) result.step = StepReport{json.seconds("step_s"), json.text("step_from")};
   if (json.has("target")) result.target = json.text("target");
   if (json.has("settings")) result.settings = json.object("settings").all_texts();
   if (json.has("emulator")) result.emulator = read_emulator(json.object("emulator"));
@@ -350,6 +355,9 @@ std::string to_json(const TrialResult& result) {
             {"policy", result.policy},        {"clock", result.clock},
             {"cpu_factor", result.cpu_factor}};
   if (result.clock == kScripted) json["computing_s"] = exact_seconds(result.computing);
+  if (result.step)
+    json.update(
+        Json{{"step_s", exact_seconds(result.step->step)}, {"step_from", result.step->from}});
   if (!result.target.empty()) json["target"] = result.target;
   if (!result.settings.empty()) json["settings"] = result.settings;
   if (!result.emulator.program.empty()) json["emulator"] = json_of(result.emulator);
@@ -365,6 +373,7 @@ std::string to_json(const TrialResult& result) {
                    {"sync", json_of(result.sync)},
                    {"contacts", json_of(result.contacts)},
                    {"audit", json_of(result.audit)}});
+  if (!result.flight_digest.empty()) json["flight_digest"] = result.flight_digest;
   if (!result.tasks.empty()) json["tasks"] = json_of(result.tasks);
   if (!result.clauses.empty()) json["clauses"] = json_of(result.clauses);
   if (!result.energy.empty()) json["energy"] = json_of(result.energy);
@@ -392,6 +401,7 @@ TrialResult result_from_json(const std::string& text, const std::filesystem::pat
       result.energy.push_back(read_energy(energy));
   for (const JsonReader& sut : json.objects("suts")) result.suts.push_back(read_sut(sut));
   result.sync = read_sync(json.object("sync"));
+  if (json.has("flight_digest")) result.flight_digest = json.text("flight_digest");
   if (json.has("contacts"))
     for (const JsonReader& own : json.objects("contacts"))
       result.contacts.push_back(read_contacts(own));

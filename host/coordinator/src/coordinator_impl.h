@@ -31,7 +31,7 @@ namespace tether::coordinator {
 ///
 /// looks.cpp watches what the threads of SUTs do meanwhile, which nothing else depends on.
 /// A request passes them in this order: it is validated; on a shared board, it waits until its
-/// instant is known (settle_board); it is planned (accept) and held by the barrier; ST advances to
+/// instant is known (settle_boards); it is planned (accept) and held by the barrier; ST advances to
 /// its reply's timestamp; release_ready sends the reply and logs the interaction. A message between
 /// UAVs that arrives meanwhile can move a reply to an earlier instant (promise).
 class Coordinator::Impl {
@@ -85,7 +85,9 @@ class Coordinator::Impl {
   void break_off(Session& session, link::Refusal::Reason reason, const Fault& fault);
   Standing standing(const Session& session) const;
   static Duration own_work(Session& session, ExecTime stamp);
-  void settle_board(std::size_t uav);
+  bool settle_boards();
+  bool settle_pool(std::size_t pool);
+  ExecTime undisturbed_until(std::size_t pool) const;
   void begin(Session& session, const Arrived& arrived);
   record::Interaction make_entry(const Session& session, const Arrived& arrived) const;
   ExecTime charge(Session& session, const Arrived& arrived, record::Interaction& entry);
@@ -118,9 +120,13 @@ class Coordinator::Impl {
 
   // Outgoing.
   void release_ready();
+  void settle();
   void answer_free_running();
+  std::optional<SimTime> waits_until(const PendingInteraction& pending) const;
+  SimTime next_wake() const;
   void reply(Session& session, std::size_t open_index, SimTime st);
   void leave(Session& session);
+  void computes_from(Session& session, ExecTime at);
   std::optional<uav::CameraSample> image_to_record(Session& session, const link::Request& request,
                                                    const link::Reply& reply) const;
 
@@ -163,7 +169,6 @@ class Coordinator::Impl {
   std::optional<SimTime> fallen_at_;  // a battery is empty: when the run ends
   std::string fall_;                  // the reason
   std::optional<Ending> expelled_;    // how the run ends once the other SUTs have finished
-  std::vector<std::size_t> expelled_from_boards_;  // SUTs whose share the others have from now on
   std::optional<Ending> ended_;
 };
 

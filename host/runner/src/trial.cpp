@@ -250,11 +250,12 @@ campaign::TrialResult run_trial(const TrialSpec& spec, const FindBackEnd& find_b
   sim::WorldStore none;
   sim::World world = (spec.worlds ? *spec.worlds : none)
                          .load(scenario::world_request(spec.scenario, spec.seed), warnings.sink());
+  scenario::resolve_step(spec.scenario, world);
   scenario::resolve_energy(spec.scenario, spec.condition, world, warnings.sink());
   const TrialInputs inputs{
       scenario::resolve_sensors(spec.scenario, spec.condition, world, warnings.sink()),
       replayed_time(spec)};
-  world.step = spec.scenario.step;
+  const campaign::StepReport step{world.step, world.step_from};
   const SimulatorSetup setup = simulator_setup(spec, world, observer, warnings, stop);
   require_sut_programs(spec.scenario, spec.condition, spec.waits_for_sut);
   const StartSimulator start = prepare(back_end, std::move(world), warnings.sink());
@@ -276,6 +277,7 @@ campaign::TrialResult run_trial(const TrialSpec& spec, const FindBackEnd& find_b
   result.this_run.started_at = started_at;
   result.this_run.machine = os::describe_machine();
   result.warnings = warnings.all();
+  result.step = step;
   folder.release_room();
   keep(spec, folder, result);
   return result;

@@ -414,7 +414,7 @@ std::string TrialRun::reach_hint(const TrialEnd& end) {
 
 void TrialRun::end_suts(const TrialEnd& end) {
   if (end.report.end == RunEnd::kFinished)
-    for (std::string& note : suts_.await_exit()) notes_.push_back(std::move(note));
+    for (std::string& note : suts_.await_exit(end.report.suts)) notes_.push_back(std::move(note));
   for (const std::string& warning : suts_.bring_back())
     if (observer_.warn) observer_.warn(warning);
 }

@@ -15,6 +15,7 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
@@ -96,6 +97,25 @@ void fly(Vehicle& vehicle, int steps) {
     require(range ? tether::ok_status() : tether::Status(range.failure()));
     require(vehicle.annotate("step", "{\"i\": " + std::to_string(i) + "}"));
     require(vehicle.sleep_for(3ms));
+  }
+}
+
+// Every kind of call, on the way down to the floor.
+void fly_down(Vehicle& vehicle, bool exchanges) {
+  require(vehicle.command_velocity({.velocity_H_m_s = {0.4, 0.0, -1.0}, .yaw_rate_rad_s = 0.3}));
+  const std::vector<std::uint8_t> bytes(200);
+  for (int i = 0; i < 60; ++i) {
+    require(vehicle.begin_stage("read"));
+    if (vehicle.catalogue().battery_capacity_C > 0.0) {
+      const auto battery = vehicle.read_battery();
+      require(battery ? tether::ok_status() : tether::Status(battery.failure()));
+    }
+    require(vehicle.end_stage());
+    if (exchanges) {
+      require(vehicle.send("", bytes));
+      (void)vehicle.receive(4ms);
+    }
+    require(vehicle.sleep_for(20ms));
   }
 }
 
@@ -304,6 +324,16 @@ const std::map<std::string, std::function<int(Vehicle&)>> kFlyingModes = {
      [](Vehicle& v) {
        require(v.command_velocity({.velocity_H_m_s = {0.0, 0.0, -2.0}, .yaw_rate_rad_s = 0.0}));
        require(v.sleep_for(2s));
+       return finish(v, true);
+     }},
+    {"fly_down",
+     [](Vehicle& v) {
+       fly_down(v, false);
+       return finish(v, true);
+     }},
+    {"exchange",
+     [](Vehicle& v) {
+       fly_down(v, true);
        return finish(v, true);
      }},
     {"wait", wait_in_every_way},

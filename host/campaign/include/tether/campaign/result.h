@@ -191,6 +191,14 @@ struct ThisRun {
   friend bool operator==(const ThisRun&, const ThisRun&) = default;
 };
 
+/// The step of the simulation.
+struct StepReport {
+  Duration step{0};
+  std::string from;  ///< who set it: "scenario", "world" or, if neither did, "default"
+
+  friend bool operator==(const StepReport&, const StepReport&) = default;
+};
+
 /// The time of the SUTs was replayed: from what, how old, and how.
 struct ReplayReport {
   record::ReplayInfo from;
@@ -209,8 +217,9 @@ struct TrialResult {
   Duration computing{0};  ///< of clock "scripted": charged for each phase of computing
   std::optional<ReplayReport> replay{};  ///< of clock "replayed"
   double real_time_factor = 0.0;
-  std::string target{};             ///< its name; empty: the host as it is
-  record::EmulatorInfo emulator{};  ///< of a counted target
+  std::optional<StepReport> step{};  ///< none: the result is of an earlier version
+  std::string target{};              ///< its name; empty: the host as it is
+  record::EmulatorInfo emulator{};   ///< of a counted target
   /// Values of the scenario's file that were replaced (`tether run --set`, sweeps).
   std::map<std::string, std::string> settings{};
   /// Names of the profiles in use, in the order of their layers: a later one overrides an earlier.
@@ -225,6 +234,8 @@ struct TrialResult {
   std::vector<UavEnergy> energy{};  ///< of each UAV with a model of energy
   std::vector<SutResult> suts;
   SyncFigures sync;
+  /// See copies.h; empty: there is no ground truth, or the result is of an earlier version.
+  std::string flight_digest{};
   /// Of each UAV; empty: the trial did not run, or the result is of an earlier version.
   std::vector<UavContacts> contacts;
   std::optional<AuditVerdict> audit;
