@@ -92,8 +92,7 @@ std::optional<campaign::MachineLoad> load_of_board(const campaign::TargetReport&
 
 std::optional<campaign::Doubt> doubt_of(const campaign::MachineLoad& load) {
   if (load.block_spread <= kUneven && load.others <= kBusy) return std::nullopt;
-  return campaign::Doubt{campaign::Doubt::Kind::kBusyMachine, load.machine,
-                         std::max(load.block_spread, load.others)};
+  return campaign::Doubt{campaign::Doubt::Kind::kBusyMachine, load.machine, load.block_spread};
 }
 
 }  // namespace tether::runner
