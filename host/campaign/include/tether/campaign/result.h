@@ -149,7 +149,7 @@ struct Doubt {
     kBusyMachine,      ///< the machine was busy or uneven; amount: MachineLoad::block_spread
   };
   Kind kind = Kind::kUnseenWait;
-  std::string subject;  ///< the UAV of the program, or the machine
+  std::string subject;  ///< the UAV of the program, or the board; empty: this machine
   double amount = 0.0;
 
   friend bool operator==(const Doubt&, const Doubt&) = default;
