@@ -19,6 +19,7 @@ constexpr double kUneven = 0.1;
 // What a desktop or the services of a server take is less.
 constexpr double kBusy = 0.1;
 
+constexpr const char* kHost = "host";
 constexpr std::size_t kWords = 1u << 16;
 
 /// About 1 ms of integer and floating-point arithmetic on 512 KiB, which a neighbour's work can
@@ -79,7 +80,7 @@ campaign::MachineLoad MachineWatch::load(bool knows_programs) {
   const std::vector<Duration> after = times_of_blocks(reader_);
   const Duration shortest = std::min(before_.front(), after.front());
   const Duration longest = std::max(median(before_), median(after));
-  return {.machine = "host",
+  return {.machine = kHost,
           .block_spread = to_seconds(longest) / to_seconds(std::max(shortest, Duration(1))) - 1.0,
           .others = knows_programs ? others_ : 0.0};
 }
@@ -92,8 +93,8 @@ std::optional<campaign::MachineLoad> load_of_board(const campaign::TargetReport&
 
 std::optional<campaign::Doubt> doubt_of(const campaign::MachineLoad& load) {
   if (load.block_spread <= kUneven && load.others <= kBusy) return std::nullopt;
-  return campaign::Doubt{campaign::Doubt::Kind::kBusyMachine, load.machine,
-                         std::max(load.block_spread, load.others)};
+  return campaign::Doubt{campaign::Doubt::Kind::kBusyMachine,
+                         load.machine == kHost ? "" : load.machine, load.block_spread};
 }
 
 }  // namespace tether::runner

@@ -146,10 +146,10 @@ struct Doubt {
     kUnseenWait,       ///< the program waited on something that Tether does not see; amount: s
     kParallelThreads,  ///< threads computed in parallel, but their times were added; amount: CPU
                        ///< time over wall time, > 1
-    kBusyMachine,      ///< the machine was busy or uneven; amount: the larger of MachineLoad
+    kBusyMachine,      ///< the machine was busy or uneven; amount: MachineLoad::block_spread
   };
   Kind kind = Kind::kUnseenWait;
-  std::string subject;  ///< the UAV of the program, or the machine
+  std::string subject;  ///< the UAV of the program, or the board; empty: this machine
   double amount = 0.0;
 
   friend bool operator==(const Doubt&, const Doubt&) = default;
