@@ -1,4 +1,5 @@
 #include "json_reader.h"
+#include "warning_json.h"
 
 #include <algorithm>
 #include <array>
@@ -139,15 +140,6 @@ Json json_of(const UavEnergy& energy) {
               {"more_flights", optional_number(energy.more_flights())},
               {"least_voltage_v", energy.least_voltage_V},
               {"tasks", tasks}};
-}
-
-Json json_of(const Warning& warning) {
-  return Json{{"consequence", name(warning.consequence)},
-              {"file", warning.where.file},
-              {"line", warning.where.line},
-              {"subject", warning.subject},
-              {"message", warning.message},
-              {"can_change_verdict", warning.can_change_verdict}};
 }
 
 template <class T>
@@ -322,21 +314,6 @@ TargetReport read_target(const JsonReader& json) {
           .after = json.object("after").all_texts(),
           .warnings = json.texts("warnings"),
           .is_spoiled = json.boolean("is_spoiled")};
-}
-
-Warning read_warning(const JsonReader& json) {
-  const std::string word = json.text("consequence");
-  const auto consequence =
-      std::ranges::find(kConsequences, word, [](Consequence c) { return name(c); });
-  if (consequence == kConsequences.end()) json.fail("consequence", fmt::format("is \"{}\"", word));
-  constexpr std::uint64_t kMostLines = std::numeric_limits<int>::max();
-  return {*consequence,
-          {json.text("file"), static_cast<int>(std::min(json.count("line"), kMostLines))},
-          json.text("subject"),
-          json.text("message"),
-          // Results of earlier releases have none.
-          json.has("can_change_verdict") ? json.boolean("can_change_verdict")
-                                         : usually_changes_verdict(*consequence)};
 }
 
 SimulatorFigures read_simulator(const JsonReader& json) {
