@@ -142,6 +142,8 @@ Json json_of(const UavEnergy& energy) {
               {"tasks", tasks}};
 }
 
+using campaign::json_of;  // of a warning
+
 template <class T>
 Json json_of(const std::vector<T>& elements) {
   Json array = Json::array();

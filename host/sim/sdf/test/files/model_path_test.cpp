@@ -105,11 +105,11 @@ TEST_F(ModelPathTest, SuggestsTheNameThatWasProbablyMeant) {
   const auto advice = [&](const std::string& uri) {
     return path.advice_on_missing(uri, folder_.path("outer/w.sdf"));
   };
-  EXPECT_THAT(advice("model://gaet"), testing::HasSubstr("Did you mean 'model://gate'"));
-  EXPECT_THAT(advice("model://gaet/meshes/a.dae"), testing::HasSubstr("'model://gate'"));
-  EXPECT_THAT(advice("wal.sdf"), testing::HasSubstr("Did you mean 'wall.sdf'"));
+  EXPECT_THAT(advice("model://gaet"), ::testing::HasSubstr("Did you mean 'model://gate'"));
+  EXPECT_THAT(advice("model://gaet/meshes/a.dae"), ::testing::HasSubstr("'model://gate'"));
+  EXPECT_THAT(advice("wal.sdf"), ::testing::HasSubstr("Did you mean 'wall.sdf'"));
   for (const char* uri : {"model://sunflower", "no/such.sdf", "model://"})
-    EXPECT_THAT(advice(uri), testing::Not(testing::HasSubstr("Did you mean"))) << uri;
+    EXPECT_THAT(advice(uri), ::testing::Not(::testing::HasSubstr("Did you mean"))) << uri;
 }
 
 TEST_F(ModelPathTest, TakesTheLatestSdfFileOfAModelThatCanBeRead) {
