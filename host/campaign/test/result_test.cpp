@@ -35,6 +35,9 @@ TEST_F(Result, ReadsBackWithEverythingMissing) {
   failed.this_run.attempts = 2;
   failed.this_run.first_failure = "no port either";
   failed.this_run.notes = {"a SUT was stopped", "this machine was suspended"};
+  failed.this_run.doubts = {{Doubt::Kind::kUnseenWait, "uav1", 4.9},
+                            {Doubt::Kind::kBusyMachine, "pi", 0.3}};
+  failed.this_run.loads = {{"pi", 0.3, 0.0}};
   failed.this_run.sut_files = {"flight.csv", "pictures/1.png"};
   failed.this_run.node = "n1";
   failed.this_run.size_arguments = {"face_anchor", "--condition", "target, counted"};
@@ -335,6 +338,9 @@ TEST_F(MakeResult, MissesTheGoalBeyondALimit) {
   EXPECT_EQ(make(record, kReached).outcome, Outcome::kGoalMissed);
   EXPECT_EQ(exit_code(make(record, kReached).outcome), 1);
   EXPECT_EQ(make(record, kReached).reason, "time_required is 31 s, beyond its limit of 30 s");
+  record.interactions[0].message.request_at = ExecTime(seconds(30) + std::chrono::nanoseconds(1));
+  EXPECT_EQ(make(record, kReached).reason,
+            "time_required is 30.000000001 s, beyond its limit of 30 s");
   record.interactions.clear();
   EXPECT_THAT(make(record, kReached).reason, HasSubstr("no time_required: "));
   record = finished_record();

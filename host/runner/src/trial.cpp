@@ -1,9 +1,11 @@
 #include "drawing_threads.h"
 #include "local_sut.h"
+#include "machine_watch.h"
 #include "size_arguments.h"
 #include "trial_run.h"
 #include "warning_log.h"
 
+#include <algorithm>
 #include <chrono>
 #include <limits>
 #include <map>
@@ -141,6 +143,15 @@ SimulatorSetup simulator_setup(const TrialSpec& spec, const sim::World& world,
           .stop = stop};
 }
 
+/// They are no doubts: the SUT's own threads may have waited for each other's processors.
+void add_board_loads(campaign::ThisRun& run) {
+  const auto add = [&run](const campaign::TargetReport& target) {
+    if (const auto load = load_of_board(target)) run.loads.push_back(*load);
+  };
+  if (run.target) add(*run.target);
+  std::ranges::for_each(run.more_targets, add);
+}
+
 /// @throws Error(kSetup) if the simulator, the board or a SUT cannot be started, or the simulator
 /// is lost before the run.
 campaign::TrialResult fly(const TrialSpec& spec, const StartSimulator& start,
@@ -164,6 +175,9 @@ campaign::TrialResult fly(const TrialSpec& spec, const StartSimulator& start,
     for (const MachineReadings& machine : conducted.others)
       campaign::add_target(result, machine.info, machine.after);
     result.this_run.notes = conducted.notes;
+    result.this_run.doubts = conducted.doubts;
+    result.this_run.loads = conducted.loads;
+    add_board_loads(result.this_run);
     const auto& notes = inputs.replayed.warnings;
     result.this_run.notes.insert(result.this_run.notes.end(), notes.begin(), notes.end());
     if (const auto work = simulator->get().work())
