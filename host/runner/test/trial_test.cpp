@@ -104,7 +104,7 @@ TEST_F(Trial, DoubtsNoVerdictForWhatTheSimulatorItselfReadsOfTheWorld) {
   spec_.scenario.world =
       scratch_.write("w.sdf",
                      "<sdf version='1.7'><world name='w'>"
-                     "<physics name='p' type='ode'><max_step_size>0.004</max_step_size></physics>"
+                     "<physics name='p' type='ode'><max_step_size>0.002</max_step_size></physics>"
                      "<wind><linear_velocity>5 0 0</linear_velocity></wind></world></sdf>");
   spec_.scenario.step.reset();
   observer_.on_status = [&](const coordinator::RunStatus&) { stop_.request_stop(); };
@@ -116,7 +116,7 @@ TEST_F(Trial, DoubtsNoVerdictForWhatTheSimulatorItselfReadsOfTheWorld) {
     });
     ASSERT_EQ(result.warnings.size(), 1u);
     EXPECT_EQ(result.warnings[0].can_change_verdict, !reads_world);
-    EXPECT_EQ(result.step, (campaign::StepReport{std::chrono::milliseconds(4), "world"}));
+    EXPECT_EQ(result.step, (campaign::StepReport{std::chrono::milliseconds(2), "world"}));
   }
 }
 
