@@ -107,7 +107,7 @@ runner::BackEnd back_end(GazeboSimulator) {
       return std::make_unique<InGazebo>(world, setup);
     };
   };
-  return {prepare, [] { return sim::find_gazebo().files(); }};
+  return {prepare, [] { return sim::find_gazebo().files(); }, true};
 }
 
 }  // namespace

@@ -8,12 +8,15 @@
 
 #include <fmt/format.h>
 
+#include <tether/os/interrupt.h>
 #include <tether/os/program.h>
 #include <tether/sim_sdf/load_world.h>
 
 namespace tether::app {
 
 int check_world(const WorldCheckOptions& options, const std::stop_token&) {
+  // libsdformat takes half a minute for some worlds, and cannot be stopped.
+  const os::Interrupt::EndsAtOnce reading;
   const auto shipped = scenario::ShippedFiles::of_program(os::own_file());
   std::vector<Warning> warnings;
   const auto collect = [&](const Warning& warning) { warnings.push_back(warning); };

@@ -44,6 +44,9 @@ int with_errors_printed(const std::function<int()>& command) {
   } catch (const std::exception& e) {
     say("tether: internal error: {}\n", e.what());
     return exit_code(ErrorCode::kInternal);
+  } catch (...) {  // of a library whose exceptions are not the standard library's
+    say("tether: internal error of a library\n");
+    return exit_code(ErrorCode::kInternal);
   }
 }
 

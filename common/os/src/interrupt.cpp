@@ -10,6 +10,7 @@
 #include <tether/base/error.h>
 #include <tether/base/system_reason.h>
 #include <tether/os/interrupt.h>
+#include <tether/os/temporary_folder.h>
 
 // A signal handler may only make few calls: it passes the signal's number through a pipe to a
 // thread, which requests the stop.
@@ -78,6 +79,14 @@ Interrupt::Pause::~Pause() {
   }
 }
 
+Interrupt::EndsAtOnce::EndsAtOnce() : interrupt_(g_interrupt) {
+  if (interrupt_ != nullptr) interrupt_->ends_at_once_ = true;
+}
+
+Interrupt::EndsAtOnce::~EndsAtOnce() {
+  if (interrupt_ != nullptr) interrupt_->ends_at_once_ = false;
+}
+
 void Interrupt::start() try {
   watcher_ = std::thread([this] { watch(); });
 } catch (const std::system_error& e) {
@@ -96,8 +105,12 @@ void Interrupt::watch() {
     if (got < 0 && errno == EINTR) continue;
     if (got != 1 || signal == kEnd) return;
     stop_.request_stop();
+    const bool is_second = signal != SIGHUP && first_ && Steady::now() - *first_ > kSameInterrupt;
+    if (is_second || ends_at_once_) {
+      remove_temporary_folders();
+      _exit(128 + signal);
+    }
     if (signal == SIGHUP) continue;  // the kernel and the shell send one each, at any distance
-    if (first_ && Steady::now() - *first_ > kSameInterrupt) _exit(128 + signal);
     if (!first_) first_ = Steady::now();
   }
 }

@@ -1,5 +1,7 @@
 #include <cerrno>
 #include <cstdlib>
+#include <mutex>
+#include <set>
 #include <system_error>
 
 #include <tether/base/error.h>
@@ -8,6 +10,21 @@
 
 namespace tether::os {
 namespace {
+
+struct Living {
+  std::mutex mutex;
+  std::set<std::filesystem::path> folders;
+};
+/// Never destroyed: objects may outlive the statics of this file.
+Living& living() {
+  static auto& living = *new Living;
+  return living;
+}
+
+void remove_quietly(const std::filesystem::path& folder) {
+  std::error_code ignored;
+  std::filesystem::remove_all(folder, ignored);
+}
 
 /// $TMPDIR, else /tmp. `temp_directory_path` fails if $TMPDIR is not a folder.
 std::filesystem::path usual_parent() {
@@ -30,11 +47,19 @@ TemporaryFolder::TemporaryFolder(const std::string& prefix, const std::filesyste
                     : reason);
   }
   path_ = name;
+  const std::lock_guard lock(living().mutex);
+  living().folders.insert(path_);
 }
 
 TemporaryFolder::~TemporaryFolder() {
-  std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
+  remove_quietly(path_);
+  const std::lock_guard lock(living().mutex);
+  living().folders.erase(path_);
+}
+
+void remove_temporary_folders() {
+  const std::lock_guard lock(living().mutex);
+  for (const std::filesystem::path& folder : living().folders) remove_quietly(folder);
 }
 
 }  // namespace tether::os

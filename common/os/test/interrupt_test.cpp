@@ -1,12 +1,15 @@
 #include <condition_variable>
 #include <csignal>
+#include <filesystem>
 #include <mutex>
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <tether/base_testing/scratch_folder.h>
 #include <tether/os/interrupt.h>
+#include <tether/os/temporary_folder.h>
 
 /// A second signal that comes later: tests/system/run/interrupt_test.cpp.
 namespace tether::os {
@@ -68,6 +71,22 @@ TEST(Interrupt, TakesSignalsOfAPauseAfterIt) {
   }
   wait_for(interrupt.token());
   EXPECT_TRUE(interrupt.token().stop_requested());
+}
+
+TEST(Interrupt, EndsAtOnceWhereNothingElseCanBeStopped) {
+  const ScratchFolder scratch;
+  EXPECT_EXIT(
+      {
+        const Interrupt interrupt;
+        const TemporaryFolder half_written("half-", scratch.path());
+        { const Interrupt::EndsAtOnce passed; }
+        const Interrupt::EndsAtOnce reading;
+        raise(SIGTERM);
+        for (;;) pause();
+      },
+      testing::ExitedWithCode(128 + SIGTERM), "");
+  EXPECT_TRUE(std::filesystem::is_empty(scratch.path()));
+  const Interrupt::EndsAtOnce alone;  // without an Interrupt
 }
 
 TEST(SleepUnlessStopped, EndsWithAStopRequest) {

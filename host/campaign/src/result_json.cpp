@@ -1,5 +1,6 @@
 #include "json_reader.h"
 #include "this_run_json.h"
+#include "warning_json.h"
 
 #include <algorithm>
 #include <array>
@@ -133,14 +134,7 @@ Json json_of(const UavEnergy& energy) {
               {"tasks", tasks}};
 }
 
-Json json_of(const Warning& warning) {
-  return Json{{"consequence", name(warning.consequence)},
-              {"file", warning.where.file},
-              {"line", warning.where.line},
-              {"subject", warning.subject},
-              {"message", warning.message},
-              {"can_change_verdict", warning.can_change_verdict}};
-}
+using campaign::json_of;  // of a warning
 
 template <class T>
 Json json_of(const std::vector<T>& elements) {
@@ -276,21 +270,6 @@ UavEnergy read_energy(const JsonReader& json) {
   for (const JsonReader& task : json.objects("tasks"))
     energy.tasks.push_back({task.text("task"), read_spent(task)});
   return energy;
-}
-
-Warning read_warning(const JsonReader& json) {
-  const std::string word = json.text("consequence");
-  const auto consequence =
-      std::ranges::find(kConsequences, word, [](Consequence c) { return name(c); });
-  if (consequence == kConsequences.end()) json.fail("consequence", fmt::format("is \"{}\"", word));
-  constexpr std::uint64_t kMostLines = std::numeric_limits<int>::max();
-  return {*consequence,
-          {json.text("file"), static_cast<int>(std::min(json.count("line"), kMostLines))},
-          json.text("subject"),
-          json.text("message"),
-          // Results of earlier releases have none.
-          json.has("can_change_verdict") ? json.boolean("can_change_verdict")
-                                         : usually_changes_verdict(*consequence)};
 }
 
 ReplayReport read_replay(const JsonReader& json) {

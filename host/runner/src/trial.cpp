@@ -214,6 +214,20 @@ std::string utc_now() {
       fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
 }
 
+sim::World load_world(const TrialSpec& spec, const BackEnd& back_end, WarningLog& warnings) {
+  std::vector<Warning> of_files;
+  sim::WorldStore none;
+  sim::World world = (spec.worlds ? *spec.worlds : none)
+                         .load(scenario::world_request(spec.scenario, spec.seed),
+                               [&](const Warning& warning) { of_files.push_back(warning); });
+  for (Warning& warning : of_files) {
+    if (back_end.reads_world && world.sdf_files.contains(warning.where.file))
+      warning.can_change_verdict = false;
+    warnings.sink()(warning);
+  }
+  return world;
+}
+
 /// Prepares the simulator. What is no mistake of the user's, such as too little memory, is thrown
 /// by the start instead, so that it ends in a result.
 StartSimulator prepare(const BackEnd& back_end, sim::World world, const WarningSink& warn) try {
@@ -247,9 +261,7 @@ campaign::TrialResult run_trial(const TrialSpec& spec, const FindBackEnd& find_b
   const BackEnd back_end = find_back_end(spec.condition.simulator);
   scenario::require_clock(spec.scenario, spec.condition);
   WarningLog warnings(observer.on_warnings);
-  sim::WorldStore none;
-  sim::World world = (spec.worlds ? *spec.worlds : none)
-                         .load(scenario::world_request(spec.scenario, spec.seed), warnings.sink());
+  sim::World world = load_world(spec, back_end, warnings);
   scenario::resolve_step(spec.scenario, world);
   scenario::resolve_energy(spec.scenario, spec.condition, world, warnings.sink());
   const TrialInputs inputs{

@@ -99,6 +99,27 @@ TEST_F(Trial, KeepsWarningsAndPassesThemOnBeforeTheRun) {
   for (const Warning& warning : passed_on) EXPECT_THAT(list, HasSubstr(to_line(warning)));
 }
 
+// Wind, for example: the embedded simulator has none, Gazebo has.
+TEST_F(Trial, DoubtsNoVerdictForWhatTheSimulatorItselfReadsOfTheWorld) {
+  spec_.scenario.world =
+      scratch_.write("w.sdf",
+                     "<sdf version='1.7'><world name='w'>"
+                     "<physics name='p' type='ode'><max_step_size>0.002</max_step_size></physics>"
+                     "<wind><linear_velocity>5 0 0</linear_velocity></wind></world></sdf>");
+  spec_.scenario.step.reset();
+  observer_.on_status = [&](const coordinator::RunStatus&) { stop_.request_stop(); };
+  for (const bool reads_world : {false, true}) {
+    const auto result = run([&](const std::string& name) {
+      BackEnd back_end = fake_back_end()(name);
+      back_end.reads_world = reads_world;
+      return back_end;
+    });
+    ASSERT_EQ(result.warnings.size(), 1u);
+    EXPECT_EQ(result.warnings[0].can_change_verdict, !reads_world);
+    EXPECT_EQ(result.step, (campaign::StepReport{std::chrono::milliseconds(2), "world"}));
+  }
+}
+
 TEST_F(Trial, WritesNothingIfAnOptionOrAFileIsWrong) {
   const auto subject = [&](ErrorCode code) {
     return thrown_error(code,

@@ -12,7 +12,7 @@ namespace {
 
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 constexpr double kGravity_m_s2 = 9.81;
 
@@ -71,7 +71,7 @@ TEST(HoverLoop, DependsOnTheRotors) {
   EXPECT_NEAR(loop_at(milliseconds(50), heavy).damping, loop_at(milliseconds(50)).damping, 0.02);
 }
 
-class CheckStep : public testing::Test {
+class CheckStep : public ::testing::Test {
  protected:
   CheckStep() {
     world_.file = "/w.sdf";

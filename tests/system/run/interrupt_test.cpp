@@ -1,8 +1,11 @@
 #include "support/faults.h"
 
 #include <csignal>
+#include <filesystem>
 
 #include <gtest/gtest.h>
+
+#include <tether/os/text_file.h>
 
 /// A run that a signal ends.
 namespace tether::system_test {
@@ -53,6 +56,27 @@ TEST(BeforeTheSutHasJoined, CtrlCEndsTheRun) {
   run.process().signal(SIGINT);
   EXPECT_EQ(run.wait(10s).code, 3);
   EXPECT_EQ(read_result(folder / "out")["end"], "interrupted");
+}
+
+// libsdformat cannot be stopped while it reads. With this world, it takes some ten seconds.
+TEST(WorldCheck, EndsAtOnceAndLeavesNothing) {
+  const TempFolder folder;
+  std::string models;
+  for (int i = 0; i < 4000; ++i)
+    models +=
+        "<model name='m" + std::to_string(i) + "'><static>true</static><link name='l'/></model>\n";
+  const std::filesystem::path world = folder / "w.sdf", temporary = folder / "tmp";
+  os::write_file_atomically(world,
+                            "<sdf version='1.7'><world name='w'>\n" + models + "</world></sdf>");
+  std::filesystem::create_directory(temporary);
+  for (const int signal : {SIGINT, SIGTERM}) {
+    Process process(
+        with(tether({"world", "check", world.string()}), {}, {{"TMPDIR", temporary.string()}}));
+    ASSERT_TRUE(wait_until([&] { return !std::filesystem::is_empty(temporary); }));
+    process.signal(signal);
+    EXPECT_EQ(process.wait(5s).code, 128 + signal);
+    EXPECT_TRUE(std::filesystem::is_empty(temporary));
+  }
 }
 
 }  // namespace

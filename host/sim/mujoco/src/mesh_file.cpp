@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <exception>
+#include <new>
 #include <numeric>
 #include <set>
 #include <string>
@@ -237,7 +239,7 @@ void hide_pictures(std::string& collada) {
   }
 }
 
-std::unique_ptr<Assimp::Importer> import(const std::filesystem::path& file) {
+std::unique_ptr<Assimp::Importer> import(const std::filesystem::path& file) try {
   std::string bytes = os::read_file(file, kLargestMesh);
   const std::string type = type_of(file);
   if (type == ".dae") {
@@ -266,6 +268,12 @@ std::unique_ptr<Assimp::Importer> import(const std::filesystem::path& file) {
   check_faces(*scene, file);
   importer->ApplyPostProcessing(aiProcess_Triangulate | aiProcess_FlipUVs);
   return importer;
+} catch (const Error&) {
+  throw;
+} catch (const std::bad_alloc&) {
+  throw;
+} catch (const std::exception& error) {  // of a step of Assimp that catches none itself
+  fail_mesh(file, "cannot be read as a mesh: " + std::string(error.what()));
 }
 
 bool has_area(const raster::Mesh& mesh) {

@@ -138,10 +138,17 @@ LightKind to_light_kind(sdf::LightType type) {
   return type == sdf::LightType::SPOT ? LightKind::kSpot : LightKind::kPoint;
 }
 
-void check_and_load(SdfSource& source, SdfPurpose purpose, const WarningSink& warn) {
-  check_elements(source, purpose, warn);
-  mend(source, warn);
-  source.load();
+/// Reads a file and makes something of it. `read` gets the source.
+template <class Read>
+auto read_file(const std::filesystem::path& file, const WorldOptions& options, SdfPurpose purpose,
+               const WarningSink& warn, Read read) {
+  return ask_library({file.string()}, [&] {
+    SdfSource source(file, options, warn);
+    check_elements(source, purpose, warn);
+    mend(source, warn);
+    source.load();
+    return read(source);
+  });
 }
 
 void add_uavs(const WorldRequest& request, const WarningSink& warn, World& world) {
@@ -154,12 +161,13 @@ void add_uavs(const WorldRequest& request, const WarningSink& warn, World& world
           .about(placement.name);
     }
     const auto [known, is_new] = read.try_emplace(placement.model);
-    if (is_new) {
-      SdfSource source(placement.model, request.options, warn);
-      check_and_load(source, SdfPurpose::kUav, warn);
-      known->second = read_uav(source, world.gravity_m_s2, warn);
-      world.files.merge(source.files());
-    }
+    if (is_new)
+      known->second = read_file(placement.model, request.options, SdfPurpose::kUav, warn,
+                                [&](const SdfSource& source) {
+                                  Uav uav = read_uav(source, world.gravity_m_s2, warn);
+                                  world.files.merge(source.files());
+                                  return uav;
+                                });
     Uav& uav = world.uavs.emplace_back(known->second);
     uav.name = placement.name;
     uav.X_WB = start_pose(placement);
@@ -190,17 +198,17 @@ Light read_light(const SdfSource& source, const sdf::Light& light, const Pose& X
 
 World load_world(const WorldRequest& request, const WarningSink& any_warn) {
   const WarningSink warn = printable_warnings(any_warn);
-  SdfSource source(request.world, request.options, warn);
-  check_and_load(source, SdfPurpose::kWorld, warn);
-  World world = read_world(source, warn);
-  world.file = source.file();
-  world.sdf_files = source.sdf_files();
-  add_uavs(request, warn, world);
-  for (const std::string& name : request.anchors) {
-    world.anchors.push_back(find_anchor(source, world, name, request.anchors_at));
-  }
-  world.files.merge(source.files());
-  return world;
+  return read_file(
+      request.world, request.options, SdfPurpose::kWorld, warn, [&](const SdfSource& source) {
+        World world = read_world(source, warn);
+        world.file = source.file();
+        world.sdf_files = source.sdf_files();
+        add_uavs(request, warn, world);
+        for (const std::string& name : request.anchors)
+          world.anchors.push_back(find_anchor(source, world, name, request.anchors_at));
+        world.files.merge(source.files());
+        return world;
+      });
 }
 
 }  // namespace tether::sim

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <optional>
 #include <stop_token>
@@ -12,8 +13,9 @@ namespace tether::os {
 
 /// Turns SIGINT, SIGTERM and SIGHUP (the terminal was closed) into a request to stop while it
 /// lives. A second SIGINT or SIGTERM more than half a second after the first ends the process at
-/// once. SIGHUP stays ignored if it was (nohup). SIGPIPE and SIGXFSZ are ignored meanwhile, so that
-/// failed writes return an error. One object at a time.
+/// once, with the status 128 + signal and without its temporary folders. SIGHUP stays ignored if it
+/// was (nohup). SIGPIPE and SIGXFSZ are ignored meanwhile, so that failed writes return an error.
+/// One object at a time.
 class Interrupt {
  public:
   /// @throws Error(kSetup) if a pipe or a thread cannot be created.
@@ -38,6 +40,19 @@ class Interrupt {
     Interrupt* paused_;
   };
 
+  /// While this lives, the first signal ends the process at once: for a library that cannot be
+  /// stopped, in a command that has written nothing. Does nothing if there is no Interrupt.
+  class EndsAtOnce {
+   public:
+    EndsAtOnce();
+    ~EndsAtOnce();
+    EndsAtOnce(const EndsAtOnce&) = delete;
+    EndsAtOnce& operator=(const EndsAtOnce&) = delete;
+
+   private:
+    Interrupt* interrupt_;
+  };
+
  private:
   void start();
   void end_thread();
@@ -47,6 +62,7 @@ class Interrupt {
   Pipe signals_;  // a byte for each
   bool ignores_hangup_ = false;
   std::stop_source stop_;
+  std::atomic<bool> ends_at_once_ = false;
   std::optional<std::chrono::steady_clock::time_point> first_;  // signal
   std::thread watcher_;
 };

@@ -5,7 +5,8 @@
 
 namespace tether::os {
 
-/// A new folder that only this user can enter, removed with the object.
+/// A new folder that only this user can enter, removed with the object, and by an Interrupt that
+/// ends the process.
 class TemporaryFolder {
  public:
   /// Its name is `prefix` and six characters. @throws Error(kSetup) if it cannot be made.
@@ -22,5 +23,9 @@ class TemporaryFolder {
  private:
   std::filesystem::path path_;
 };
+
+/// Removes the folders of all objects that live; for a process that ends without their destructors.
+/// Thread-safe.
+void remove_temporary_folders();
 
 }  // namespace tether::os

@@ -49,6 +49,8 @@ struct BackEnd {
   std::function<StartSimulator(sim::World, const sim::WarningSink&)> prepare;
   /// Files of the simulator that a result depends on. @throws Error(kSetup) if one is missing.
   std::function<std::vector<std::filesystem::path>()> files;
+  /// It reads the world's files itself: what the embedded simulator leaves out of them is there.
+  bool reads_world = false;
 };
 
 /// Returns the simulator of that name. @throws Error(kUsage) if it is unknown.

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <set>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -48,10 +48,23 @@ void rename_duplicates(const SdfSource& source, const sdf::ElementPtr& parent,
 /// Smallest radius of gyration that a mended inertia has.
 constexpr double kLeastRadius_m = 1e-3;
 
+template <class... Precision>
+std::string digits_of(double number, Precision... precision) {
+  std::array<char, 32> text{};
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), number, precision...).ptr;
+  return {text.data(), end};
+}
+/// The shortest text that reads back as the same number.
+std::string exact(double number) {
+  return digits_of(number);
+}
+/// Of nine digits, so that a sum shows why it is too small.
+std::string shown(double number) {
+  return digits_of(number, std::chars_format::general, 9);
+}
+
 std::string three_numbers(const Vector3d& v) {
-  std::ostringstream text;
-  text << v.X() << " " << v.Y() << " " << v.Z();
-  return text.str();
+  return shown(v.X()) + " " + shown(v.Y()) + " " + shown(v.Z());
 }
 
 /// In ascending order.
@@ -96,7 +109,7 @@ void mend_inertia(const SdfSource& source, const sdf::ElementPtr& inertial,
           warn);
   for (const auto& [name, value] :
        {std::pair("ixx", mended.X()), std::pair("iyy", mended.Y()), std::pair("izz", mended.Z())})
-    inertia->GetElement(name)->Set(value);
+    inertia->GetElement(name)->GetValue()->SetFromString(exact(value));  // Set keeps six digits
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include <initializer_list>
 #include <optional>
 
+#include <tether/os/text_file.h>
+
 namespace tether::sim {
 
 using uav::Vec3;
@@ -100,6 +102,19 @@ void read_texture(const SdfSource& source, const sdf::ElementPtr& element, const
   material.texture_repeat_y = numbers[1];
 }
 
+/// Without a <material>, a visual has the colours and pictures of its mesh's file, if that has any.
+void warn_of_lost_colors(const SdfSource& source, const sdf::Visual& visual,
+                         const Geometry& geometry, const WarningSink& warn) {
+  const auto* mesh = std::get_if<MeshGeometry>(&geometry);
+  if (mesh == nullptr || visual.Material() != nullptr) return;
+  const std::string extension = extension_of(mesh->file);
+  const char* mark = extension == ".obj" ? "usemtl" : extension == ".dae" ? "<effect" : nullptr;
+  if (mark == nullptr || os::read_file(mesh->file).find(mark) == std::string::npos) return;
+  warn_at(source, visual.Element(), Effect(Consequence::kLooksDifferent, true),
+          "is grey: the materials of the file of its mesh are not used. Give it a <material>",
+          warn);
+}
+
 /// Colours not given: a texture shows as it is, an untextured surface is grey; ambient is diffuse.
 Material read_material(const SdfSource& source, const sdf::Visual& visual,
                        const WarningSink& warn) {
@@ -159,6 +174,7 @@ Link read_link(const SdfSource& source, const sdf::Link& link, const WarningSink
     const sdf::Visual& visual = *link.VisualByIndex(i);
     const auto geometry = read_geometry(source, *visual.Geom(), warn);
     if (!geometry) continue;
+    warn_of_lost_colors(source, visual, *geometry, warn);
     result.visuals.push_back({visual.Name(), resolved_pose(source, visual), *geometry,
                               read_material(source, visual, warn), visual.CastShadows()});
   }

@@ -15,6 +15,8 @@
 
 #include <tinyxml2.h>
 
+#include <tether/base/suggest.h>
+
 namespace tether::sim {
 
 namespace fs = std::filesystem;
@@ -138,6 +140,18 @@ std::optional<fs::path> first_existing(const std::vector<fs::path>& folders,
   return std::nullopt;
 }
 
+/// The name beside `missing` that is most like its own; empty: none is.
+std::string similar(const fs::path& missing) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (fs::directory_iterator entry(missing.parent_path(), error), end; !error && entry != end;
+       entry.increment(error))
+    names.push_back(entry->path().filename());
+  std::ranges::sort(names);
+  return std::string(nearest(missing.filename().string(),
+                             std::vector<std::string_view>(names.begin(), names.end())));
+}
+
 }  // namespace
 
 ModelPath::ModelPath(const fs::path& world, std::vector<fs::path> model_folders)
@@ -165,24 +179,37 @@ std::optional<fs::path> ModelPath::find(const std::string& uri, const fs::path& 
     const std::string file = uri.starts_with("file://") ? uri.substr(7) : uri;
     return first_existing({from.parent_path(), world_.parent_path()}, file);
   }
-  std::vector<fs::path> folders;
-  add_surroundings(from, folders);
-  add_surroundings(world_, folders);
-  folders.insert(folders.end(), model_folders_.begin(), model_folders_.end());
-  if (const auto found = first_existing(folders, path)) return found;
+  if (const auto found = first_existing(folders_of_models(from), path)) return found;
   const std::size_t slash = std::min(path.find('/'), path.size());
   return find_in_caches(fuel_caches_, {"", path.substr(0, slash), 0,
                                        fs::path(path.substr(std::min(slash + 1, path.size())))});
 }
 
-std::string advice_on_missing(const std::string& uri) {
+std::vector<fs::path> ModelPath::folders_of_models(const fs::path& from) const {
+  std::vector<fs::path> folders;
+  add_surroundings(from, folders);
+  add_surroundings(world_, folders);
+  folders.insert(folders.end(), model_folders_.begin(), model_folders_.end());
+  return folders;
+}
+
+std::string ModelPath::advice_on_missing(const std::string& uri, const fs::path& from) const {
   if (is_on_fuel(uri)) {
     return "Fuel models are not fetched. Download it with `gz fuel download -u \"" +
            uri.substr(0, uri.find("/files/")) +
            "\"`, or use --missing-models placeholder to fly without it";
   }
-  if (uri.find("://") == std::string::npos)
-    return "Correct the path, or use --missing-models placeholder to fly without it";
+  const std::size_t scheme = uri.find("://");
+  if (scheme == std::string::npos) {
+    const std::string name = similar(from.parent_path() / uri);
+    return (name.empty() ? "Correct the path" : "Did you mean '" + name + "'? Correct the path") +
+           ", or use --missing-models placeholder to fly without it";
+  }
+  const std::string name = uri.substr(scheme + 3, uri.find('/', scheme + 3) - scheme - 3);
+  for (const fs::path& folder : folders_of_models(from))
+    if (const std::string meant = similar(folder / name); !meant.empty())
+      return "Did you mean '" + uri.substr(0, scheme + 3) + meant + "', in " + folder.string() +
+             "? Or use --missing-models placeholder to fly without it";
   return "Put it next to the world or into its models/, add its folder to GZ_SIM_RESOURCE_PATH, "
          "download it with `gz fuel download`, or use --missing-models placeholder to fly without "
          "it";

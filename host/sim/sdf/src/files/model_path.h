@@ -25,14 +25,17 @@ class ModelPath {
   std::optional<std::filesystem::path> find(const std::string& uri,
                                             const std::filesystem::path& from) const;
 
+  /// What to do about a URI in the file `from` that leads nowhere: the end of an error message,
+  /// with the name that was probably meant.
+  std::string advice_on_missing(const std::string& uri, const std::filesystem::path& from) const;
+
  private:
+  std::vector<std::filesystem::path> folders_of_models(const std::filesystem::path& from) const;
+
   std::filesystem::path world_;
   std::vector<std::filesystem::path> model_folders_;
   std::vector<std::filesystem::path> fuel_caches_;
 };
-
-/// What to do about a URI that leads nowhere: the end of an error message.
-std::string advice_on_missing(const std::string& uri);
 
 /// The SDF file of a model's folder, of the latest version that libsdformat reads, as model.config
 /// says; empty if there is none. @param version the latest, such as "1.9"

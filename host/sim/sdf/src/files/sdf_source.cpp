@@ -10,9 +10,9 @@
 
 #include <algorithm>
 #include <iostream>
+#include <new>
 #include <regex>
 #include <sstream>
-#include <stdexcept>
 #include <streambuf>
 #include <vector>
 
@@ -119,13 +119,16 @@ const tinyxml2::XMLElement* element_at(const tinyxml2::XMLElement& element, cons
   return found;
 }
 
-/// What libsdformat answers about a file; some broken ones make it throw.
-template <class Question>
-auto ask_library(const fs::path& file, Question question) try {
-  return question();
-} catch (const std::logic_error& error) {
-  throw Error(ErrorCode::kBadFile, {file.string(), 0},
-              "libsdformat cannot read it (" + std::string(error.what()) + ")");
+/// The line of the first element with "::" in its name, which libsdformat's converters take apart;
+/// 0: there is none.
+int line_of_nested_name(const tinyxml2::XMLElement& element) {
+  const char* name = element.Attribute("name");
+  if (name != nullptr && std::string_view(name).find("::") != std::string_view::npos)
+    return element.GetLineNum();
+  for (const auto* child = element.FirstChildElement(); child != nullptr;
+       child = child->NextSiblingElement())
+    if (const int line = line_of_nested_name(*child)) return line;
+  return 0;
 }
 
 /// Of any SDF document, to read a file into. The reader copies what it needs of the description,
@@ -147,6 +150,26 @@ sdf::SDFPtr empty_sdf() {
 }
 
 }  // namespace
+
+void refuse_by_library(const FileLocation& where) {
+  std::string reason;
+  try {
+    throw;
+  } catch (const Error&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const sdf::Exception& error) {  // of its assertions; no std::exception
+    reason = error.GetErrorStr();
+  } catch (const std::exception& error) {
+    reason = error.what();
+  }
+  throw Error(ErrorCode::kBadFile, where,
+              "libsdformat cannot read it (" + one_line(reason) + ")" +
+                  (where.line > 0 ? ". A name with '::' is that of something in a nested model; "
+                                    "write it without"
+                                  : ""));
+}
 
 std::string name_attribute(const sdf::ElementPtr& element) {
   const std::string name =
@@ -192,8 +215,10 @@ void SdfSource::read(const WarningSink& warn) {
   for (const SdfStage::File& staged : stage_.files()) {
     sdf::Errors errors;
     parsed_ = empty_sdf();
-    const bool is_read = ask_library(
-        staged.original, [&] { return sdf::readFile(staged.copy, config, parsed_, errors); });
+    const auto* root = stage_.root_of(staged.original);
+    const bool is_read =
+        ask_library({staged.original.string(), root != nullptr ? line_of_nested_name(*root) : 0},
+                    [&] { return sdf::readFile(staged.copy, config, parsed_, errors); });
     for (const sdf::Error& error : errors) {
       if (warn && is_warning(error)) warn(warning_of(error));
     }
@@ -221,7 +246,7 @@ Warning SdfSource::warning_of(const sdf::Error& error) const {
 
 void SdfSource::load() {
   const QuietConsole quiet;
-  sdf::Errors errors = ask_library(file_, [&] { return root_.Load(parsed_); });
+  sdf::Errors errors = ask_library({file_.string()}, [&] { return root_.Load(parsed_); });
   std::erase_if(errors, is_warning);
   if (!errors.empty()) refuse_by(errors);
 }
@@ -305,9 +330,9 @@ fs::path SdfSource::find_resource(const sdf::ElementPtr& element, const std::str
     return *resources_.insert(fs::absolute(*found).lexically_normal()).first;
   if (options_.replaces_missing_models) return {};
   const std::string subject = describe(element);
-  throw Error(
-      ErrorCode::kBadFile, where(element),
-      subject + " names the file '" + uri + "', which is not found. " + advice_on_missing(uri))
+  throw Error(ErrorCode::kBadFile, where(element),
+              subject + " names the file '" + uri + "', which is not found. " +
+                  path_.advice_on_missing(uri, stage_.original_of(element->FilePath())))
       .about(subject);
 }
 

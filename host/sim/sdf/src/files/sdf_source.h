@@ -70,6 +70,18 @@ class SdfSource {
   mutable std::set<std::filesystem::path> resources_;
 };
 
+/// In a handler: turns what libsdformat threw into the refusal of the file. Other errors stay.
+[[noreturn]] void refuse_by_library(const FileLocation& where);
+
+/// What `question` answers, with libsdformat, about a file. Some broken ones make it throw; `where`
+/// is the place in doubt.
+template <class Question>
+auto ask_library(const FileLocation& where, Question question) try {
+  return question();
+} catch (...) {
+  refuse_by_library(where);
+}
+
 /// "<mass> of link 'body'": an element by its name and its nearest named ancestor, for messages.
 std::string describe(const sdf::ElementPtr& element);
 /// The element's name attribute; empty where it has none.

@@ -6,6 +6,7 @@
 #include "files/file_kind.h"
 #include "files/sdf_numbers.h"
 #include "files/sdf_version_number.h"
+#include "files/sdf_xml.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -66,36 +67,6 @@ void write(const fs::path& file, const XMLDocument& document) {
     throw Error(ErrorCode::kSetup, {file.string()}, "cannot be written: " + reason_of(errno));
 }
 
-const XMLElement& sdf_element(const fs::path& file, const XMLDocument& document) {
-  const XMLElement* root = document.RootElement();
-  if (root == nullptr) {
-    throw Error(ErrorCode::kBadFile, {file.string(), 0},
-                "has no element; the outermost element of an SDF file must be <sdf>");
-  }
-  if (std::string_view(root->Name()) != "sdf") {
-    throw Error(ErrorCode::kBadFile, {file.string(), root->GetLineNum()},
-                "the outermost element is <" + std::string(root->Name()) + ">; it must be <sdf>");
-  }
-  return *root;
-}
-
-std::unique_ptr<XMLDocument> read_xml(const fs::path& file) {
-  if (is_folder(file)) {
-    throw Error(ErrorCode::kBadFile, {file.string(), 0},
-                "is a directory; give the SDF file in it, such as model.sdf");
-  }
-  if (!is_file(file)) throw Error(ErrorCode::kBadFile, {file.string(), 0}, "there is no such file");
-  auto document = std::make_unique<XMLDocument>();
-  document->LoadFile(file.c_str());
-  if (document->Error() && document->ErrorID() != tinyxml2::XML_ERROR_EMPTY_DOCUMENT) {
-    require_a_handle_for(file.string());
-    throw Error(ErrorCode::kBadFile, {file.string(), document->ErrorLineNum()},
-                "not well-formed XML (" + std::string(document->ErrorName()) + ")");
-  }
-  sdf_element(file, *document);
-  return document;
-}
-
 /// Without the blanks around it.
 std::string content_of(const XMLElement* element) {
   const std::string text =
@@ -142,8 +113,8 @@ fs::path SdfStage::stage(const fs::path& file) {
   auto& original = originals_[file.string()] = read_xml(file);
   check_numbers(file.string(), *original);
 
-  XMLDocument document;
-  document.LoadFile(file.c_str());  // a copy of the other has no lines
+  const auto copied = read_xml(file);  // a copy of the other has no lines
+  XMLDocument& document = *copied;
   XMLElement& root = *document.RootElement();
   lower_version(file, root);
   open_.insert(file);
@@ -171,12 +142,16 @@ void SdfStage::lower_version(const fs::path& file, XMLElement& root) {
   root.SetAttribute("version", sdf::SDF::Version().c_str());
 }
 
-/// Those in `element`. A plugin's elements are its own.
+/// Those in `element`. A plugin's elements are its own. Gazebo saves poses with an empty frame,
+/// which means none, and on which libsdformat's converter gives up.
 void SdfStage::resolve_includes(const fs::path& file, XMLElement& element) {
   for (XMLElement *child = element.FirstChildElement(), *next = nullptr; child != nullptr;
        child = next) {
     next = child->NextSiblingElement();
     const std::string_view name = child->Name();
+    if (name == "pose")
+      for (const char* frame : {"frame", "relative_to"})
+        if (child->Attribute(frame, "") != nullptr) child->DeleteAttribute(frame);
     if (name == "include")
       resolve(file, *child);
     else if (name != "plugin" && name.find(':') == std::string_view::npos)
@@ -210,7 +185,7 @@ fs::path SdfStage::find_included(const fs::path& file, const XMLElement& uri) co
   if (!found) {
     if (options_.replaces_missing_models) return {};
     throw Error(ErrorCode::kBadFile, where,
-                subject + " leads to nothing. " + advice_on_missing(content_of(&uri)))
+                subject + " leads to nothing. " + path_.advice_on_missing(content_of(&uri), file))
         .about(subject);
   }
   fs::path sdf = fs::absolute(*found).lexically_normal();

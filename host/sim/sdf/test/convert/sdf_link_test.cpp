@@ -85,6 +85,28 @@ TEST(SdfLink, TakesTexturesOfPngAndJpegAndWarnsOfOthers) {
                                      "<albedo_map> of visual 'v'")));
 }
 
+TEST(SdfLink, WarnsOfMaterialsThatOnlyTheMeshHas) {
+  const ScratchFolder folder;
+  folder.write("painted.obj", "mtllib a.mtl\nusemtl red\n");
+  folder.write("painted.dae", "<COLLADA><library_effects><effect/></library_effects></COLLADA>");
+  folder.write("plain.obj", "v 0 0 0\n");
+  folder.write("plain.stl", "solid usemtl");
+  const auto warnings_of = [&](const std::string& mesh, const std::string& material = "") {
+    return load({folder.write("w.sdf",
+                              link_sdf("<visual name='v'><geometry><mesh><uri>" + mesh +
+                                       "</uri></mesh></geometry>" + material + "</visual>")),
+                 {},
+                 {}})
+        .warnings;
+  };
+  for (const char* mesh : {"painted.obj", "painted.dae"}) {
+    EXPECT_THAT(warnings_of(mesh), ElementsAre(is_warning(Consequence::kLooksDifferent,
+                                                          folder.path("w.sdf"), 5, "visual 'v'")));
+    EXPECT_THAT(warnings_of(mesh, "<material><diffuse>1 0 0 1</diffuse></material>"), IsEmpty());
+  }
+  for (const char* mesh : {"plain.obj", "plain.stl"}) EXPECT_THAT(warnings_of(mesh), IsEmpty());
+}
+
 TEST(SdfLink, ReadsWhetherASubmeshIsCentered) {
   const ScratchFolder folder;
   folder.write("m.obj", "");

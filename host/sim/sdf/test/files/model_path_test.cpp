@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <map>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace tether::sim {
@@ -95,6 +96,20 @@ TEST_F(ModelPathTest, ResolvesPathsByTheFileThenByTheWorld) {
   folder_.write("outer/a.dae", "");
   EXPECT_EQ(find("a.dae"), "outer/a.dae");
   EXPECT_EQ(find("../worlds/a.dae"), "worlds/a.dae");
+}
+
+TEST_F(ModelPathTest, SuggestsTheNameThatWasProbablyMeant) {
+  folder_.write("outer/models/gate/model.config", "");
+  folder_.write("outer/wall.sdf", "");
+  const ModelPath path(folder_.path("outer/w.sdf"), {});
+  const auto advice = [&](const std::string& uri) {
+    return path.advice_on_missing(uri, folder_.path("outer/w.sdf"));
+  };
+  EXPECT_THAT(advice("model://gaet"), ::testing::HasSubstr("Did you mean 'model://gate'"));
+  EXPECT_THAT(advice("model://gaet/meshes/a.dae"), ::testing::HasSubstr("'model://gate'"));
+  EXPECT_THAT(advice("wal.sdf"), ::testing::HasSubstr("Did you mean 'wall.sdf'"));
+  for (const char* uri : {"model://sunflower", "no/such.sdf", "model://"})
+    EXPECT_THAT(advice(uri), ::testing::Not(::testing::HasSubstr("Did you mean"))) << uri;
 }
 
 TEST_F(ModelPathTest, TakesTheLatestSdfFileOfAModelThatCanBeRead) {

@@ -1,4 +1,8 @@
+#include "files/sdf_source.h"
+
 #include "sdf_folder.h"
+
+#include <new>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -31,6 +35,34 @@ TEST(SdfSource, FindsIncludesByModelUriAndRelativeToTheFile) {
       std::get<MeshGeometry>(loaded.world.models[1].links.at(0).visuals.at(0).geometry);
   EXPECT_TRUE(std::filesystem::exists(mesh.file));
   EXPECT_EQ(mesh.scale, (Vec3{2, 2, 2}));
+}
+
+// Gazebo saves nested models so, and libsdformat's converter gives up on the empty frame.
+TEST(SdfSource, ReadsNamesOfNestedModelsWithEmptyFrames) {
+  const Loaded loaded = load_content(R"(<model name='m'><static>1</static>
+      <link name='a::b'><pose frame=''>1 0 0 0 0 0</pose>
+        <collision name='c'><pose frame="">0 2 0 0 0 0</pose>
+          <geometry><box><size>1 1 1</size></box></geometry></collision></link></model>)");
+  ASSERT_EQ(loaded.world.models.size(), 2u);
+  EXPECT_EQ(loaded.world.models[1].name, "m::a");
+  EXPECT_EQ(loaded.world.models[1].links.at(0).collisions.at(0).X_LC.p, (Vec3{0, 2, 0}));
+}
+
+TEST(SdfSource, RefusesWhatMakesTheLibraryThrow) {
+  const ScratchFolder folder;
+  const auto file = folder.write("w.sdf", world_sdf("<model name='m'><static>1</static>\n"
+                                                    "<link name='::'><pose relative_to='x'>"
+                                                    "1 0 0 0 0 0</pose></link></model>"));
+  const Error error = refusal({file, {}, {}});
+  EXPECT_EQ(error.where(), (FileLocation{file.string(), 4}));
+  EXPECT_THAT(error.what(), ::testing::HasSubstr("libsdformat cannot read it"));
+  const auto throwing = [](const auto& exception) {
+    return bad_file_error([&] { ask_library({"f.sdf"}, [&]() -> int { throw exception; }); });
+  };
+  EXPECT_THAT(throwing(sdf::AssertionInternalError("f", 1, "a == b", "g", "wrong")).what(),
+              ::testing::HasSubstr("f.sdf: libsdformat cannot read it (SDF ASSERTION));
+  EXPECT_THROW(ask_library({"f.sdf"}, []() -> int {
+    throw std::bad_alloc(); }), std::bad_alloc);
 }
 
 TEST(SdfSource, PrintsNothing) {
