@@ -83,14 +83,14 @@ TEST_F(Suts, ReportSignals) {
 TEST_F(Suts, NoteAnExitCodeThatContradictsTheReportedGoal) {
   start({"exit 1", "exit 1", "exit 0"});
   const auto report = [](const char* uav, bool reached) {
-    coordinator::SutReport one{.uav = uav};
+    coordinator::SutReport one;
+    one.uav = uav;
     one.finish.emplace().reached_goal = reached;
     return one;
   };
-  EXPECT_THAT(
-      suts_.await_exit({report("uav1", false), report("uav2", true), report("uav3", true)}),
-      ElementsAre(AllOf(HasSubstr("after it had finished: "), HasSubstr(""uav2""),
-                        HasSubstr("exited with code 1"))));
+  EXPECT_THAT(suts_.await_exit({report("uav1", false), report("uav2", true), report("uav3", true)}),
+              ElementsAre(AllOf(HasSubstr("after it had finished: "), HasSubstr("" uav2 ""),
+                                HasSubstr("exited with code 1"))));
 }
 
 TEST_F(Suts, RepeatNoReasonThatTheyHaveReported) {

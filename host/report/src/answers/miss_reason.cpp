@@ -46,10 +46,13 @@ bool have_same_sensors(const Compared& a, const Compared& b) {
   return a.flights.front()->profiles == b.flights.front()->profiles && simulator(a) == simulator(b);
 }
 
-/// Records do not have all settings of a radio, which can differ between conditions.
+/// Conditions can differ in their radio, of which not all is known.
+bool have_no_radio(const Pace& a, const Pace& b) {
+  return a.radio.model.empty() && b.radio.model.empty();
+}
+
 bool differ_in_speed_only(const Compared& a, const Compared& b) {
-  return a.pace() && b.pace() && !a.pace()->has_radio && !b.pace()->has_radio &&
-         have_same_sensors(a, b);
+  return a.pace() && b.pace() && have_no_radio(*a.pace(), *b.pace()) && have_same_sensors(a, b);
 }
 
 /// What an image costs under both or, without a camera, the largest stage of the first.

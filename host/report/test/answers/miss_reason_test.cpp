@@ -96,9 +96,9 @@ TEST_F(MissReasons, AreSpeedIfAFasterConditionReachesTheGoal) {
   trials(host)[0].versions["simulator"] = "Gazebo";
   expect_unknown("another simulator");
   trials(host)[0].versions["simulator"] = "MuJoCo";
-  paces_[host]->has_radio = paces_[board]->has_radio = true;
+  paces_[host]->radio.model = paces_[board]->radio.model = "log_distance";
   expect_unknown("a radio, which may be another one");
-  paces_[host]->has_radio = paces_[board]->has_radio = false;
+  paces_[host]->radio = paces_[board]->radio = {};
   paces_[host]->median_s = 0.3;
   expect_unknown("not faster");
 }
@@ -185,7 +185,7 @@ TEST_F(MissReasons, AreNotTheTaskThatDidNotRunIfOneBeforeItWasLate) {
                    {.uav = "uav1", .name = "soon", .margin = -1.0, .deadline = SimTime{}}};
   EXPECT_EQ(ruling(0), Ruling::kGoalMissed);
   trial.clauses.pop_back();
-  trial.tasks = {{.uav = "uav1", .task = "search", .status = "not_reached"}};
+  trial.tasks = {{"uav1", "search", {}, {}, "not_reached", ""}};
   EXPECT_EQ(ruling(0), Ruling::kGoalMissed);
 }
 
