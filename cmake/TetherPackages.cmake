@@ -69,6 +69,23 @@ foreach(page IN ITEMS tether.1:tether tether-sut.1:tether-sut tether-exec.1:teth
   install(FILES "${source}" DESTINATION "${section}" COMPONENT ${component})
 endforeach()
 
+# What shells load when the name of a program is completed for the first time. It asks the program, so that it works
+# for programs of other machines too, and always fits the program.
+set(completed tether-sut)
+if(NOT TETHER_TARGET_ONLY)
+  list(APPEND completed tether)
+endif()
+foreach(program IN LISTS completed)
+  foreach(place IN ITEMS "bash:bash-completion/completions/${program}" "zsh:zsh/vendor-completions/_${program}"
+      "fish:fish/vendor_completions.d/${program}.fish")
+    string(REGEX MATCH "^(.*):(.*)/(.*)$" match "${place}")
+    set(folder "${CMAKE_INSTALL_DATADIR}/${CMAKE_MATCH_2}")
+    set(file "${documents}/${CMAKE_MATCH_3}")
+    configure_file("packaging/completions/${CMAKE_MATCH_1}.in" "${file}.${CMAKE_MATCH_1}" @ONLY)
+    install(FILES "${file}.${CMAKE_MATCH_1}" DESTINATION "${folder}" RENAME "${CMAKE_MATCH_3}" COMPONENT ${program})
+  endforeach()
+endforeach()
+
 foreach(component IN LISTS components)
   set(destination "${CMAKE_INSTALL_DATADIR}/doc/${package_of_${component}}")
   install(FILES packaging/copyright DESTINATION "${destination}" COMPONENT ${component})

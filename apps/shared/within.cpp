@@ -16,7 +16,8 @@ std::string shown(double value) {
 }
 
 CLI::Validator within(double least, double most) {
-  const std::string range = shown(least) + " to " + shown(most);
+  constexpr double kLargestWhole = 9007199254740992.0;
+  const std::string range = shown(least) + " to " + (most == kLargestWhole ? "2^53" : shown(most));
   return CLI::Validator(
       [=](const std::string& text) -> std::string {
         double value = 0.0;

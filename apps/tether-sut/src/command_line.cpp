@@ -1,6 +1,8 @@
 #include "command_line.h"
 
 #include "shared/complaint.h"
+#include "shared/completion.h"
+#include "shared/help.h"
 #include "shared/within.h"
 
 #include <algorithm>
@@ -10,10 +12,12 @@
 #include <vector>
 
 #include <CLI/CLI.hpp>
+#include <unistd.h>
 
 #include <tether/base/units.h>
 #include <tether/base/version.h>
 #include <tether/calibration/profile_text.h>
+#include <tether/os/terminal.h>
 #include <tether/rig/device_arguments.h>
 #include <tether/rig/mission_file.h>
 #include <tether/rig/task_fields.h>
@@ -434,17 +438,21 @@ std::variant<CommandLine, Refusal> understand(const CLI::App& app, Words& words)
 
 std::variant<CommandLine, Refusal> parse_command_line(int argc, const char* const* argv) {
   Words words;
-  CLI::App app(kDescription, "tether-sut");
-  app.set_version_flag("--version", "tether-sut " + std::string(version()));
-  app.footer(footer_of(""));
-  app.require_subcommand(1);
-  define_subcommands(app, words);
+  CLI::App program(kDescription, "tether-sut");
+  program.set_version_flag("--version", "tether-sut " + std::string(version()));
+  program.footer(footer_of(""));
+  program.require_subcommand(1);
+  program.formatter(app::help_format(os::text_columns(STDOUT_FILENO)));  // of the commands too
+  define_subcommands(program, words);
+  std::string shell;
+  app::add_completion_command(program, shell);
   try {
-    app.parse(argc, argv);
+    program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return refusal(app, error);
+    return refusal(program, error);
   }
-  return understand(app, words);
+  if (!shell.empty()) return Refusal{0, app::completion_script(program, shell)};
+  return understand(program, words);
 }
 
 }  // namespace tether::sut

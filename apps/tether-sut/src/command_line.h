@@ -24,8 +24,8 @@ struct CommandLine {
   std::optional<std::string> clock;
 };
 
-/// A text to print instead of running a command, and the exit code: 0 for --help and --version, 2
-/// for wrong use, with one line.
+/// A text to print instead of running a command, and the exit code: 0 for --help, --version
+/// and the script for a shell, 2 for wrong use, with one line.
 struct Refusal {
   int exit_code = 2;
   std::string text;

@@ -142,6 +142,8 @@ struct TimingOptions {
   std::filesystem::path out;
   std::filesystem::path csv;
   std::filesystem::path html;
+  std::filesystem::path junit;
+  bool json = false;
 };
 /// Prints what each stage of a program computes, or how it changed.
 int time_stages(const TimingOptions& options, const std::stop_token&);

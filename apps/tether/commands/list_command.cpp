@@ -1,7 +1,7 @@
 #include "commands/commands.h"
+#include "terminal/print.h"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <string>
 
@@ -17,15 +17,13 @@ using scenario::ShippedFile;
 using scenario::ShippedFiles;
 using scenario::ShippedKind;
 
-constexpr std::array kKinds = {ShippedKind::kScenario, ShippedKind::kCampaign, ShippedKind::kWorld,
-                               ShippedKind::kProfile, ShippedKind::kTarget};
-
 }  // namespace
 
 int list_shipped(const ListOptions&, const std::stop_token&) {
   const auto shipped = ShippedFiles::of_program(os::own_file());
   const char* gap = "";
-  for (const ShippedKind kind : kKinds) {
+  for (int i = 0; i < scenario::kShippedKinds; ++i) {
+    const auto kind = static_cast<ShippedKind>(i);
     const auto files = shipped.list(kind);
     std::size_t width = 0;
     for (const ShippedFile& file : files) width = std::max(width, file.name.size());
@@ -33,11 +31,14 @@ int list_shipped(const ListOptions&, const std::stop_token&) {
     for (const ShippedFile& file : files) {
       std::string text = file.description;
       if (!text.empty()) text.front() = static_cast<char>(std::toupper(text.front()));
-      fmt::print("  {:<{}}  {}\n", file.name, width, text);
+      print(fmt::format("  {:<{}}  {}\n", file.name, width, text));
     }
     gap = "\n";
   }
-  fmt::print("\nThe files are in {}. Copy one to change it.\n", shipped.folder().string());
+  print(fmt::format(
+      "\nThe files are in {}. Scenarios and campaigns can name them as listed here: world = "
+      "\"room\". Copy a file to change it, and give the copy another name.\n",
+      shipped.folder().string()));
   return 0;
 }
 

@@ -1,5 +1,6 @@
 #include "commands/commands.h"
 #include "reading/file_kind.h"
+#include "terminal/print.h"
 #include "terminal/print_report.h"
 
 #include <cerrno>
@@ -15,6 +16,7 @@
 #include <tether/base/error.h>
 #include <tether/campaign/campaign_results.h>
 #include <tether/campaign/result.h>
+#include <tether/os/terminal.h>
 #include <tether/os/text_file.h>
 #include <tether/report/page.h>
 #include <tether/report/report.h>
@@ -61,10 +63,11 @@ void require_result(const std::filesystem::path& folder) {
                              record.string()));
 }
 
-std::string joined(const std::vector<report::Table>& tables,
-                   std::string (*render)(const report::Table&)) {
+std::string joined(const std::vector<report::Table>& tables, bool is_markdown) {
   std::string text;
-  for (const report::Table& table : tables) text += render(table) + "\n";
+  for (const report::Table& table : tables)
+    text +=
+        (is_markdown ? to_markdown(table) : to_text(table, os::text_columns(STDOUT_FILENO))) + "\n";
   return text;
 }
 
@@ -105,9 +108,10 @@ std::string rendered(const ReportOptions& options) {
       first.push_back(std::move(stages));
   }
   tables.insert(tables.begin(), first.begin(), first.end());
-  return report::verdict_text(verdicts,
-                              is_markdown ? report::Markup::kMarkdown : report::Markup::kPlain) +
-         joined(tables, is_markdown ? report::to_markdown : report::to_text);
+  const report::Markup markup = is_markdown           ? report::Markup::kMarkdown
+                                : options.out.empty() ? markup_of_stdout()
+                                                      : report::Markup::kPlain;
+  return report::verdict_text(verdicts, markup) + joined(tables, is_markdown);
 }
 
 }  // namespace
@@ -116,7 +120,9 @@ int report(const ReportOptions& options, const std::stop_token&) {
   const std::string text = rendered(options);
   std::filesystem::path out = options.out;
   if (out.empty() && options.format == kHtml) out = options.folder / campaign::kReportFile;
-  if (out.empty()) {
+  if (out.empty() && options.format == "text") {
+    print(text);
+  } else if (out.empty()) {
     fmt::print("{}", text);
   } else {
     os::write_file_atomically(out, text);
@@ -128,22 +134,23 @@ int report(const ReportOptions& options, const std::stop_token&) {
 void print_campaign_summary(const std::filesystem::path& folder) {
   const campaign::CampaignResults results = campaign::read_campaign_results(folder);
   const std::vector<report::Verdict> verdicts = report::verdicts_of(results, folder);
-  fmt::print("{}", report::verdict_text(verdicts, report::Markup::kPlain));
-  for (const auto& points : report::by_scenario(verdicts))
-    fmt::print("{}\n", to_text(report::rulings_table(points)));
+  print(report::verdict_text(verdicts, markup_of_stdout()));
+  const auto show = [](const report::Table& table) {
+    print(to_text(table, os::text_columns(STDOUT_FILENO)) + "\n");
+  };
+  for (const auto& points : report::by_scenario(verdicts)) show(report::rulings_table(points));
   const auto sweeps = report::sweeps_of(results);
-  for (const report::Sweep& sweep : sweeps) fmt::print("{}\n", to_text(report::sweep_table(sweep)));
+  for (const report::Sweep& sweep : sweeps) show(report::sweep_table(sweep));
   for (const auto& scenario : results.scenarios)
-    if (scenario.swept_from.empty())
-      fmt::print("{}\n", to_text(report::paper_form_table(scenario)));
-  fmt::print(
-      "Records and results: {0}\n"
-      "Next steps:\n"
-      "  tether report {0} --format html   one page with tables and plots\n"
-      "  tether report {0}                 only the tables\n"
-      "  tether audit {0}/SCENARIO/CONDITION/seed-NNNN/record.mcap\n"
-      "  open a record.mcap in Foxglove (log time is simulated time)\n",
-      folder.string());
+    if (scenario.swept_from.empty()) show(report::paper_form_table(scenario));
+  print(
+      fmt::format("Records and results: {0}\n"
+                  "Next steps:\n"
+                  "  tether report {0} --format html   one page with tables and plots\n"
+                  "  tether report {0}                 only the tables\n"
+                  "  tether audit {0}/SCENARIO/CONDITION/seed-NNNN/record.mcap\n"
+                  "  open a record.mcap in Foxglove (log time is simulated time)\n",
+                  folder.string()));
 }
 
 }  // namespace tether::app

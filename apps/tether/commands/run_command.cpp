@@ -6,6 +6,7 @@
 #include "options/trial_options.h"
 #include "reading/file_kind.h"
 #include "reading/world_options.h"
+#include "terminal/print.h"
 #include "terminal/say.h"
 #include "terminal/status_line.h"
 
@@ -145,7 +146,7 @@ int run_and_print(const RunOptions& options, const std::stop_token& stop) {
       observer.on_setup = [&](const std::string& text) { line.show(text); };
       observer.on_blocked = [&](const std::string& text) { line.print(text); };
     }
-    observer.on_refused = [](const std::string& text) { say("warning: {}\n", text); };
+    observer.on_refused = [](const std::string& text) { complain("warning: " + text); };
     observer.on_listening = [](const std::string& text) {
       say("Waiting for the SUT to connect. Start it with:\n{}", text);
     };
@@ -157,11 +158,12 @@ int run_and_print(const RunOptions& options, const std::stop_token& stop) {
   if (options.json)
     fmt::print("{}\n", campaign::to_json(result));
   else if (!options.quiet)
-    fmt::print("{}", report::run_text(result, spec.folder));
+    print(report::run_text(result, spec.folder, markup_of_stdout()));
   // A person has read the reason on the same terminal.
   const bool is_read = !options.json && !options.quiet && os::terminal_columns(STDOUT_FILENO) > 0 &&
                        os::terminal_columns(STDERR_FILENO) > 0;
-  if (result.outcome == campaign::Outcome::kFailed && !is_read) say("tether: {}\n", result.reason);
+  if (result.outcome == campaign::Outcome::kFailed && !is_read)
+    complain("tether: " + result.reason);
   return campaign::exit_code(result.outcome);
 }
 

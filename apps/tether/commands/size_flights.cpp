@@ -1,6 +1,7 @@
 #include "commands/size_flights.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
@@ -57,6 +58,15 @@ scenario::Campaign SizeFlights::make_campaign(std::size_t most) const {
   return campaign;
 }
 
+std::string known_text(const sizing::Threshold& threshold) {
+  const bool has_low = threshold.low > 0.0, has_high = std::isfinite(threshold.high);
+  if (threshold.estimate <= 0.0 || (!has_low && !has_high)) return "no limit is known yet";
+  const std::string about = fmt::format("so far about {:.2g} times slower", threshold.estimate);
+  if (!has_low) return fmt::format("{}, at most {:.2g}", about, threshold.high);
+  if (!has_high) return fmt::format("{}, at least {:.2g}", about, threshold.low);
+  return fmt::format("{}, {:.2g} to {:.2g}", about, threshold.low, threshold.high);
+}
+
 SizeTrials::Wanted SizeFlights::slowed(std::size_t condition, double slowdown) const {
   const std::vector<double>& all = grid_.slowdowns();
   const auto place = std::ranges::find(all, slowdown) - all.begin();
@@ -83,12 +93,7 @@ SizeTrials::Questions SizeFlights::questions(sizing::Sizing& sizing,
     else
       sizing.add(into.flights.back());
   };
-  const auto so_far = [&] {
-    const sizing::Threshold& threshold = into.answer.threshold;
-    return fmt::format("so far {:.2g} × [{:.2g}, {:.2g}]", threshold.estimate, threshold.low,
-                       threshold.high);
-  };
-  return {next, take, so_far};
+  return {next, take, [&] { return known_text(into.answer.threshold); }};
 }
 
 SizeTrials::End SizeFlights::fly(report::SizeReport& report) {

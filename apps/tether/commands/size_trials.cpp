@@ -7,6 +7,7 @@
 #include "options/trial_options.h"
 #include "reading/file_kind.h"
 #include "reading/world_options.h"
+#include "terminal/print.h"
 #include "terminal/say.h"
 
 #include <algorithm>
@@ -16,6 +17,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <tether/base/counted.h>
 #include <tether/base/error.h>
 #include <tether/os/program.h>
 #include <tether/os/terminal.h>
@@ -88,7 +90,7 @@ SizeTrials::SizeTrials(const SizeOptions& options, scenario::Campaign campaign,
         return campaign::campaign_settings(campaign_, versions, files_);
       }()),
       folder_(out, campaign_, settings_, open_mode(options)) {
-  for (const std::string& warning : folder_.warnings()) say("warning: {}\n", warning);
+  for (const std::string& warning : folder_.warnings()) complain("warning: " + warning);
   for (const campaign::TrialPlan& plan : folder_.missing()) missing_[plan.folder] = &plan;
   for (const char* old : {kSizeFile, kSizeDrawing}) {
     std::error_code ignored;
@@ -189,16 +191,17 @@ void SizeTrials::take(const campaign::TrialPlan& plan, const Questions& question
 void SizeTrials::show(const campaign::CampaignProgress& progress, const Questions& questions) {
   if (os::terminal_columns(STDERR_FILENO) > 0) {
     if (progress.latest == nullptr) return;
-    line_.show(fmt::format("{} flights, at most {}; {}; flying {}", flown_ + progress.done,
-                           options_.max_trials, questions.so_far(), text_of(*progress.latest)));
+    line_.show(fmt::format("{}, at most {}; {}; flying {}",
+                           counted(flown_ + progress.done, "flight"), options_.max_trials,
+                           questions.so_far(), text_of(*progress.latest)));
   } else if (progress.result != nullptr) {
-    say("{}  {}: {}\n", flown_ + progress.done, text_of(*progress.latest),
-        campaign::name(progress.result->outcome));
+    say("{}  {}: {}; {}\n", flown_ + progress.done, text_of(*progress.latest),
+        campaign::name(progress.result->outcome), questions.so_far());
   }
 }
 
 int SizeTrials::say_why(End end) const {
-  for (const std::string& line : not_flown_) say("tether: {}\n", line);
+  for (const std::string& line : not_flown_) complain("tether: " + line);
   const std::string again =
       fmt::format("tether size {}{} --out {} --resume, with the options of this call",
                   options_.scenario.string(), options_.axis == "uavs" ? " --axis uavs" : "",
@@ -208,17 +211,17 @@ int SizeTrials::say_why(End end) const {
         "the program, but {}. Correct that, or remove the limit.\n",
         flown_, why_without_value_);
   else if (end == End::kInterrupted)
-    say("tether: interrupted after {} flights; to continue, type: {}\n", flown_, again);
+    say("tether: interrupted after {}; to continue, type: {}\n", counted(flown_, "flight"), again);
   else
-    say("tether: {} flights failed without a result. Fix the cause; to continue, type: {}\n",
-        not_flown_.size(), again);
+    say("tether: {} failed without a result. Fix the cause; to continue, type: {}\n",
+        counted(not_flown_.size(), "flight"), again);
   return exit_code(ErrorCode::kSetup);
 }
 
 void write_answer(const SizeAnswer& answer, const std::filesystem::path& out,
                   const std::filesystem::path& junit) {
   os::write_file_atomically(out / kSizeFile, answer.json);
-  fmt::print("{}", report::answer_text(answer.answers, answer.advice, report::Markup::kPlain));
+  print(report::answer_text(answer.answers, answer.advice, markup_of_stdout()));
   os::write_file_atomically(out / kSizeDrawing, report::draw_svg(answer.plot));
   os::write_file_atomically(out / campaign::kReportFile, answer.page);
   fmt::print("Page: {}\nDrawing: {}\nNumbers: {}\n", (out / campaign::kReportFile).string(),

@@ -106,8 +106,12 @@ SizeTrials::Questions questions(report::UavsReport& report, const scenario::Camp
     report.points[plan.scenario->uavs.size() - report.question.least].trials.push_back(trial);
   };
   const auto so_far = [&] {
-    return fmt::format("so far at least {} and less than {} UAVs", report.answer.carried,
-                       report.answer.too_many);
+    const std::size_t carried = report.answer.carried, too_many = report.answer.too_many;
+    std::string known =
+        carried >= report.question.least ? fmt::format(" at least {}", carried) : "";
+    if (too_many <= report.question.most)
+      known += fmt::format("{} fewer than {}", known.empty() ? "" : ",", too_many);
+    return "UAVs that it carries: " + (known.empty() ? "nothing is known yet" : known.substr(1));
   };
   return {next, take, so_far};
 }

@@ -1,4 +1,5 @@
 #include "commands/commands.h"
+#include "terminal/print.h"
 
 #include <algorithm>
 #include <optional>
@@ -108,7 +109,10 @@ int check_target(const CheckOptions& options, const std::stop_token& stop) {
   const Check check = options.address.empty()
                           ? check_here()
                           : check_board(scenario::parse_ssh_address(options.address), stop);
-  fmt::print("{}", options.json ? to_json(check) : to_text(check));
+  if (options.json)
+    fmt::print("{}", to_json(check));
+  else
+    print(to_text(check));
   return has(check, Health::kBad) ? 1 : 0;
 }
 

@@ -2,8 +2,10 @@
 
 #include "commands/commands.h"
 #include "shared/complaint.h"
+#include "shared/completion.h"
+#include "shared/help.h"
 #include "shared/within.h"
-#include "terminal/say.h"
+#include "terminal/print.h"
 
 #include <algorithm>
 #include <functional>
@@ -16,9 +18,11 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <tether/base/error.h>
 #include <tether/base/version.h>
+#include <tether/os/terminal.h>
 
 // The options of all commands, with their help texts. Of this program, only this source includes
 // CLI11, which is expensive to compile. docs/man/tether.1 describes the same options.
@@ -122,25 +126,29 @@ std::shared_ptr<RunOptions> add_run_command(CLI::App& program, Action& action) {
   command
       ->add_option("--real-time-factor", options->real_time_factor,
                    "Maximum speed of the simulation relative to the wall clock")
-      ->check(within(1e-3, 1e4));
+      ->check(within(1e-3, 1e4))
+      ->type_name("FACTOR");
   command
       ->add_option("--cpu-time-scale", options->cpu_time_scale,
                    "With the clock \"cpu\": count CPU time so many times, because this machine is "
                    "that much faster than the one of other runs")
-      ->check(within(1e-3, 1e3));
+      ->check(within(1e-3, 1e3))
+      ->type_name("FACTOR");
   command
       ->add_option("--slowdown", options->slowdown,
                    "Make the SUT's computer so many times slower than the condition's")
-      ->check(within(1e-3, 1e4));
+      ->check(within(1e-3, 1e4))
+      ->type_name("FACTOR");
   command->add_option("--unknown-stages", options->unknown_stages,
                       "With the clock \"replayed\": time of stages that were not recorded, "
                       "instead of the condition's unknown_stages: refused (the run ends), counted "
                       "or zero");
   command
-      ->add_option("--set", options->settings,
-                   "Replace a value of the scenario, given by its key's path: time_limit_s=30, "
-                   "cpu_factor=4 (of each [[condition]] that has it), "
-                   "sut.parameters.yaw_rate_deg_s=40, uavs=2 (the first two); can be repeated")
+      ->add_option(
+          "--set", options->settings,
+          "Set a value of the scenario, given by its key's path: time_limit_s=30, "
+          "cpu_factor=4 (of each [[condition]] that has it), \"uav.position_m=[1, 0, 1]\", "
+          "sut.parameters.yaw_rate_deg_s=40, uavs=2 (the first two); can be repeated")
       ->type_name("KEY=VALUE")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
@@ -223,13 +231,17 @@ void add_size_command(CLI::App& program, Action& action) {
   command
       ->add_option("--success", options->success,
                    "Share of flights that must reach the goal, above 0 and below 1")
+      ->type_name("SHARE")
       ->capture_default_str();
   command
       ->add_option("--confidence", options->confidence,
                    "Confidence of the answer's interval, above 0 and below 1")
+      ->type_name("SHARE")
       ->capture_default_str();
-  command->add_option("--interval", options->interval,
-                      "Stop when its upper bound is at most so many times the lower one [1.3]");
+  command
+      ->add_option("--interval", options->interval,
+                   "Stop when its upper bound is at most so many times the lower one [1.3]")
+      ->type_name("FACTOR");
   command
       ->add_option("--between", options->between,
                    "Slowdowns [1,40], or numbers of UAVs [1, all], to fly: LEAST,MOST")
@@ -367,8 +379,13 @@ void add_timing_command(CLI::App& program, Action& action) {
                       "its 95 % interval");
   command
       ->add_option("--limit", options->limit_percent,
-                   "With --against: the most by which a stage may become slower, in percent")
-      ->check(within(0.0, 1e6));
+                   "With --against: the most by which a stage may become slower")
+      ->check(within(0.0, 1e6))
+      ->type_name("PERCENT");
+  command->add_flag("--json", options->json, "Print the table, or the change, as JSON");
+  command->add_option("--junit", options->junit,
+                      "With --limit: also write the change as JUnit's XML for continuous "
+                      "integration, with a test case for each stage");
   command->footer(
       R"(Exit codes: 0 no stage is slower than --limit allows, or there is no limit, 1 one is, 2 wrong
 use or a bad file.
@@ -376,7 +393,8 @@ use or a bad file.
 Examples:
   tether timing out/one/record.mcap
   tether timing out/campaign/face_anchor/target/seed-* --out board.timing
-  tether timing out/new --against board.timing --limit 10)");
+  tether timing out/new --against board.timing --limit 10
+  tether timing out/new --against board.timing --limit 10 --junit timing.xml)");
 }
 
 void add_list_command(CLI::App& program, Action& action) {
@@ -443,6 +461,7 @@ int run_command_line(int argc, char** argv, std::optional<os::Interrupt>& interr
   program.footer(kFooter);
   program.set_version_flag("--version", std::string(version()));
   program.require_subcommand(1);
+  program.formatter(help_format(os::text_columns(STDOUT_FILENO)));  // of the commands too
 
   Action action;
   add_run_command(program, action);
@@ -451,11 +470,18 @@ int run_command_line(int argc, char** argv, std::optional<os::Interrupt>& interr
         add_audit_command, add_timing_command, add_frames_command, add_plot_command,
         add_world_command, add_target_command, add_list_command})
     add(program, action);
+  std::string shell;
+  add_completion_command(program, shell)->callback([&] {
+    action = [&](const std::stop_token&) {
+      fmt::print("{}", completion_script(program, shell));
+      return 0;
+    };
+  });
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return program.exit(e);  // --help, --version
-    say("tether: {}\n", complaint(program, e));
+    complain("tether: " + complaint(program, e));
     return exit_code(ErrorCode::kUsage);
   }
   interrupt.emplace();

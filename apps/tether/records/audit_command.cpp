@@ -1,6 +1,6 @@
 #include "commands/commands.h"
 #include "reading/file_kind.h"
-#include "terminal/say.h"
+#include "terminal/print.h"
 
 #include <filesystem>
 #include <string>
@@ -16,9 +16,9 @@ int audit_record(const AuditOptions& options, const std::stop_token&) {
   require_kind(options.record, FileKind::kRecord);
   const record::Record record = record::read_record(options.record);
   if (const std::string damage = record::describe_damage(record); !damage.empty())
-    say("warning: {}: {}\n", options.record.string(), damage);
+    complain("warning: " + options.record.string() + ": " + damage);
   const audit::Verdict verdict = audit::audit(record);
-  fmt::print("{}", audit::to_text(verdict, options.max_findings));
+  print(audit::to_text(verdict, options.max_findings));
   return verdict.passed() ? 0 : 1;
 }
 

@@ -1,16 +1,20 @@
 #include "commands/commands.h"
+#include "options/junit_option.h"
 #include "reading/file_kind.h"
-#include "terminal/say.h"
+#include "terminal/print.h"
 
 #include <chrono>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <tether/base/error.h>
 #include <tether/campaign/result.h>
+#include <tether/os/terminal.h>
 #include <tether/os/text_file.h>
 #include <tether/record/reader.h>
 #include <tether/report/timing_page.h>
@@ -45,7 +49,7 @@ timing::Timing read_any(const fs::path& given) {
   require_kind(file, FileKind::kRecord);
   const record::Record record = record::read_record(file);
   if (const std::string damage = record::describe_damage(record); !damage.empty())
-    say("warning: {}: {}\n", file.string(), damage);
+    complain("warning: " + file.string() + ": " + damage);
   return timing::of_record(record, file, recorded_at(file));
 }
 
@@ -66,6 +70,20 @@ void add_counted(timing::Timing& timing, const std::vector<fs::path>& files) {
                             "that was measured.",
                             counted.build_id, timing.build_id))
         .about("--counted");
+  // Libraries can be those of another machine's system.
+  const auto own_parts = [](timing::Build build) {
+    std::erase_if(build, [](const auto& part) { return part.name.starts_with("library "); });
+    return build;
+  };
+  for (const auto& [uav, build] : counted.builds)
+    if (const auto measured = timing.builds.find(uav); measured != timing.builds.end())
+      if (const auto other = timing::difference(own_parts(measured->second), own_parts(build)))
+        throw Error(
+            ErrorCode::kBadFile, {files.front().string()},
+            fmt::format("is of another program of UAV \"{}\": {}. Count the program that was "
+                        "measured.",
+                        uav, *other))
+            .about("--counted");
   for (const auto& [stage, times_ns] : timing::samples_of(counted))
     timing.counted_ns[stage] = stats::mean(times_ns);
 }
@@ -75,6 +93,9 @@ void require_fit(const TimingOptions& options) {
     throw Error(ErrorCode::kUsage, fmt::format("{}: {}", option, why)).about(option);
   };
   if (options.limit_percent && options.against.empty()) refuse("--limit", "needs --against OLD.");
+  if (!options.junit.empty() && !options.limit_percent)
+    refuse("--junit",
+           "needs --against OLD and --limit PERCENT: without a limit, no case can fail.");
   if (!options.counted.empty() && options.out.empty())
     refuse("--counted", "needs --out FILE, into which the counted work is written.");
   if (options.against.empty()) return;
@@ -88,18 +109,26 @@ int print_change(const timing::Timing& now, const TimingOptions& options) {
   const timing::Timing before = read_any(options.against);
   timing::require_scenario(before, now.scenario, options.against);
   if (now.board != before.board || now.clock != before.clock)
-    say("warning: measured on \"{}\" with the clock \"{}\", before on \"{}\" with \"{}\"\n",
-        now.board, now.clock, before.board, before.clock);
+    complain(fmt::format(
+        "warning: measured on \"{}\" with the clock \"{}\", before on \"{}\" with \"{}\"",
+        now.board, now.clock, before.board, before.clock));
   const timing::Comparison comparison = timing::compare(now, before);
-  const double limit = options.limit_percent.value_or(0.0) / 100.0;
-  fmt::print("{}", timing::to_text(comparison, options.limit_percent ? &limit : nullptr));
-  return options.limit_percent && timing::is_beyond(comparison, limit) ? 1 : 0;
+  std::optional<double> limit;
+  if (options.limit_percent) limit = *options.limit_percent / 100.0;
+  if (!options.junit.empty())
+    os::write_file_atomically(options.junit, report::change_junit(now, before, comparison, *limit));
+  if (options.json)
+    fmt::print("{}", report::change_json(now, before, comparison, limit));
+  else
+    print(timing::to_text(comparison, limit ? &*limit : nullptr));
+  return limit && timing::is_beyond(comparison, *limit) ? 1 : 0;
 }
 
 }  // namespace
 
-int time_stages(const TimingOptions& options, const std::stop_token&) {
-  require_fit(options);
+namespace {
+
+int time_all(const TimingOptions& options) {
   timing::Timing timing = read_all(options.runs);
   if (!options.against.empty()) return print_change(timing, options);
   if (!options.counted.empty()) add_counted(timing, options.counted);
@@ -107,14 +136,25 @@ int time_stages(const TimingOptions& options, const std::stop_token&) {
   if (!options.csv.empty()) os::write_file_atomically(options.csv, report::timing_csv(rows));
   if (!options.html.empty()) os::write_file_atomically(options.html, report::timing_page(timing));
   if (!options.out.empty()) timing::write_timing(options.out, timing);
-  fmt::print("{}",
-             report::answer_text({report::timing_answer(rows)}, report::timing_advice(timing, rows),
-                                 report::Markup::kPlain));
-  fmt::print("{}: {}, build {}, clock {}, on {}, recorded {}, {}\n\n{}", timing.scenario,
-             timing.program, timing.build_id.empty() ? "unknown" : timing.build_id, timing.clock,
-             timing.board, timing.recorded_at, timing::runs_text(timing), timing::to_text(rows));
-  for (const std::string& warning : timing::warnings(rows)) say("warning: {}\n", warning);
+  if (options.json) {
+    fmt::print("{}", report::timing_json(timing));
+    return 0;
+  }
+  print(report::answer_text({report::timing_answer(rows)}, report::timing_advice(timing, rows),
+                            markup_of_stdout()));
+  print(fmt::format("{}: {}, build {}, clock {}, on {}, recorded {}, {}\n\n{}", timing.scenario,
+                    timing.program, timing.build_id.empty() ? "unknown" : timing.build_id,
+                    timing.clock, timing.board, timing.recorded_at, timing::runs_text(timing),
+                    timing::to_text(rows, os::text_columns(STDOUT_FILENO))));
+  for (const std::string& warning : timing::warnings(rows)) complain("warning: " + warning);
   return 0;
+}
+
+}  // namespace
+
+int time_stages(const TimingOptions& options, const std::stop_token&) {
+  require_fit(options);
+  return with_junit(options.junit, "timing", [&] { return time_all(options); });
 }
 
 }  // namespace tether::app

@@ -1,5 +1,6 @@
 #include "terminal/errors_printed.h"
 
+#include "terminal/print.h"
 #include "terminal/say.h"
 
 #include <cerrno>
@@ -31,7 +32,7 @@ int with_errors_printed(const std::function<int()>& command) {
   try {
     return end(command());
   } catch (const Error& e) {
-    say("tether: {}\n", e.what());
+    complain(std::string("tether: ") + e.what());
     return exit_code(e.code());
   } catch (const std::bad_alloc&) {
     say("tether: out of memory\n");

@@ -111,6 +111,7 @@ Result<Message> read(const wire::Welcome& welcome) {
   out.start = from_ns<ExecTime>(welcome.start_et_ns());
   out.computing = read(welcome.computing());
   out.peers = texts_of(welcome.peers());
+  out.real_time_factor = welcome.real_time_factor();
   return Message(std::move(out));
 }
 
@@ -188,10 +189,15 @@ Result<Message> read(const wire::Reply& reply) {
 // --- the others ---------------------------------------------------------------------------------
 
 Result<Message> read(const wire::Hello& hello) {
+  std::vector<BuildPart> build;
+  if (hello.build() != nullptr)
+    for (const wire::BuildPart* part : *hello.build())
+      build.push_back({part->name()->str(), part->value()->str()});
   return Message(Hello{hello.protocol_version(), hello.sut()->str(), hello.uav()->str(),
                        static_cast<ClockKind>(hello.clock()), hello.cpu_factor(),
                        hello.token()->str(), hello.concurrent(), Duration(hello.computing_ns()),
-                       hello.build_id() != nullptr ? hello.build_id()->str() : ""});
+                       hello.build_id() != nullptr ? hello.build_id()->str() : "", hello.process(),
+                       std::move(build)});
 }
 Result<Message> read(const wire::Refusal& refusal) {
   return Message(Refusal{static_cast<Refusal::Reason>(refusal.reason()), refusal.message()->str()});

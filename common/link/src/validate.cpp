@@ -114,6 +114,11 @@ void check(Checker& c, const Hello& hello) {
   c.text(hello.build_id, kMaxBuildIdBytes, "build_id");
   c.require(hello.build_id.find_first_not_of("0123456789abcdef") == std::string::npos, "build_id",
             "is not a number in lower-case hexadecimal digits");
+  c.require(hello.build.size() <= kMaxBuildParts, "build", "has too many parts");
+  for (const BuildPart& part : hello.build) {
+    c.text(part.name, kMaxNameBytes, "build");
+    c.text(part.value, kMaxNameBytes, "build");
+  }
 }
 
 void check(Checker& c, const std::vector<StageTime>& times, std::string_view field) {
@@ -140,6 +145,8 @@ void check(Checker& c, const Welcome& welcome) {
   check(c, welcome.computing, "computing");
   c.require(welcome.peers.size() <= kMaxCatalogueEntries, "peers", "has too many entries");
   for (const std::string& peer : welcome.peers) c.text(peer, kMaxNameBytes, "peers");
+  c.require(welcome.real_time_factor > 0.0 && welcome.real_time_factor <= kMaxRealTimeFactor,
+            "real_time_factor", "is out of range");
 }
 
 void check(Checker& c, const Refusal& refusal) {

@@ -163,6 +163,13 @@ TEST(Validate, StagesHaveNamesAndTimes) {
   Hello hello{};
   hello.build_id = "no number";
   expect({"build_id", hello});
+  hello.build_id.clear();
+  hello.build.assign(kMaxBuildParts, {"argument 1", std::string(kMaxNameBytes, 'a')});
+  expect({"", hello});
+  hello.build.emplace_back();
+  expect({"too many parts", hello});
+  hello.build = {{"argument 1", std::string(kMaxNameBytes + 1, 'a')}};
+  expect({"build", hello});
 }
 
 TEST(Validate, OneWayMessages) {

@@ -1,6 +1,10 @@
 #include <algorithm>
+#include <charconv>
 #include <clocale>
+#include <cstdlib>
 #include <cwchar>
+#include <string_view>
+#include <system_error>
 
 #include <sys/ioctl.h>
 #include <unistd.h>
@@ -30,6 +34,12 @@ class Utf8 {
   locale_t utf8_;
   locale_t before_ = nullptr;
 };
+
+/// Empty: it is not set.
+std::string_view variable(const char* name) {
+  const char* const value = std::getenv(name);
+  return value != nullptr ? value : "";
+}
 
 struct Prefix {
   std::size_t bytes = 0;
@@ -61,6 +71,21 @@ int terminal_columns(int descriptor) {
   winsize size{};
   if (ioctl(descriptor, TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return kUsualColumns;
   return size.ws_col;
+}
+
+std::size_t text_columns(int descriptor) {
+  constexpr std::size_t kLeast = 20, kOfFiles = 100;
+  const std::string_view given = variable("COLUMNS");
+  std::size_t columns = 0;
+  const auto [end, error] = std::from_chars(given.data(), given.data() + given.size(), columns);
+  const bool is_number = error == std::errc() && end == given.data() + given.size();
+  if (is_number && columns >= kLeast) return columns;
+  const int shown = terminal_columns(descriptor);
+  return shown > 0 ? std::max(static_cast<std::size_t>(shown), kLeast) : kOfFiles;
+}
+
+bool shows_colours(int descriptor) {
+  return isatty(descriptor) == 1 && variable("NO_COLOR").empty() && variable("TERM") != "dumb";
 }
 
 std::string cut_to_columns(const std::string& text, int columns) {

@@ -54,5 +54,16 @@ TEST(Terminal, ShowsTheFirstFieldsThatFit) {
     EXPECT_EQ(fields_in_columns(fields, columns), line) << columns;
 }
 
+// A test's output is no terminal.
+TEST(Terminal, TextsAreAsWideAsColumnsSaysOrAHundred) {
+  for (const auto& [given, columns] :
+       {std::pair("60", 60u), std::pair("19", 100u), std::pair("80x", 100u), std::pair("", 100u)}) {
+    ::setenv("COLUMNS", given, 1);
+    EXPECT_EQ(text_columns(-1), columns) << given;
+  }
+  ::unsetenv("COLUMNS");
+  EXPECT_FALSE(shows_colours(-1));
+}
+
 }  // namespace
 }  // namespace tether::os

@@ -322,6 +322,7 @@ void read_trial(const JsonReader& json, TrialResult& result) {
   result.cpu_factor = json.number("cpu_factor");
   if (result.clock == kScripted) result.computing = json.seconds("computing_s");
   result.real_time_factor = json.number("real_time_factor");
+  if (json.has("step_s")) result.step = StepReport{json.seconds("step_s"), json.text("step_from")};
   if (json.has("target")) result.target = json.text("target");
   if (json.has("settings")) result.settings = json.object("settings").all_texts();
   if (json.has("emulator")) result.emulator = read_emulator(json.object("emulator"));
@@ -354,6 +355,9 @@ std::string to_json(const TrialResult& result) {
             {"policy", result.policy},        {"clock", result.clock},
             {"cpu_factor", result.cpu_factor}};
   if (result.clock == kScripted) json["computing_s"] = exact_seconds(result.computing);
+  if (result.step)
+    json.update(
+        Json{{"step_s", exact_seconds(result.step->step)}, {"step_from", result.step->from}});
   if (!result.target.empty()) json["target"] = result.target;
   if (!result.settings.empty()) json["settings"] = result.settings;
   if (!result.emulator.program.empty()) json["emulator"] = json_of(result.emulator);

@@ -9,7 +9,8 @@
 
 #include <tether/campaign/statistics.h>
 
-// Means with Student's and Welch's intervals, the Mann-Whitney test, exact for small samples, and Fisher's.
+// Means with Student's and Welch's intervals, the Mann-Whitney test, exact for small samples, and
+// Fisher's.
 namespace tether::campaign {
 namespace {
 

@@ -30,6 +30,15 @@ Doubt read_doubt(const JsonReader& json) {
           json.number("amount")};
 }
 
+Json json_of(const MachineLoad& load) {
+  return Json{
+      {"machine", load.machine}, {"block_spread", load.block_spread}, {"others", load.others}};
+}
+
+MachineLoad read_load(const JsonReader& json) {
+  return {json.text("machine"), json.number("block_spread"), json.number("others")};
+}
+
 TargetReport read_target(const JsonReader& json) {
   return {.name = json.text("name"),
           .address = json.text("address"),
@@ -66,6 +75,7 @@ Json json_of(const ThisRun& run) {
     json["more_targets"].push_back(json_of(target));
   if (!run.notes.empty()) json["notes"] = run.notes;
   for (const Doubt& doubt : run.doubts) json["doubts"].push_back(json_of(doubt));
+  for (const MachineLoad& load : run.loads) json["loads"].push_back(json_of(load));
   if (!run.sut_files.empty()) json["sut_files"] = run.sut_files;
   if (!run.size_arguments.empty()) json["size_arguments"] = run.size_arguments;
   if (run.simulator)
@@ -95,6 +105,8 @@ ThisRun read_this_run(const JsonReader& json) {
   if (json.has("notes")) run.notes = json.texts("notes");
   if (json.has("doubts"))
     for (const JsonReader& doubt : json.objects("doubts")) run.doubts.push_back(read_doubt(doubt));
+  if (json.has("loads"))
+    for (const JsonReader& load : json.objects("loads")) run.loads.push_back(read_load(load));
   if (json.has("sut_files")) run.sut_files = json.texts("sut_files");
   if (json.has("size_arguments")) run.size_arguments = json.texts("size_arguments");
   if (json.has("simulator")) run.simulator = read_simulator(json.object("simulator"));

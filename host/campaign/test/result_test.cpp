@@ -37,6 +37,7 @@ TEST_F(Result, ReadsBackWithEverythingMissing) {
   failed.this_run.notes = {"a SUT was stopped", "this machine was suspended"};
   failed.this_run.doubts = {{Doubt::Kind::kUnseenWait, "uav1", 4.9},
                             {Doubt::Kind::kBusyMachine, "pi", 0.3}};
+  failed.this_run.loads = {{"pi", 0.3, 0.0}};
   failed.this_run.sut_files = {"flight.csv", "pictures/1.png"};
   failed.this_run.node = "n1";
   failed.this_run.size_arguments = {"face_anchor", "--condition", "target, counted"};
@@ -67,11 +68,12 @@ TEST_F(Result, TextIsTheSameApartFromThisRun) {
 TEST_F(Result, ReadsBackWithEveryOptionalPart) {
   const std::string plain = to_json(trial_);
   for (const char* member :
-       {"\"target\":", "overshoot", "computing_s", "warnings", "\"tasks\"", "\"clauses\"",
-        "emulator", "\"energy\"", "\"margins\"", "\"quantiles\""})
+       {"\"target\":", "\"step_s\"", "overshoot", "computing_s", "warnings", "\"tasks\"",
+        "\"clauses\"", "emulator", "\"energy\"", "\"margins\"", "\"quantiles\""})
     EXPECT_THAT(plain, testing::Not(HasSubstr(member)));
   trial_.clock = "scripted";
   trial_.computing = Duration(2'500'000);
+  trial_.step = StepReport{Duration(4'000'000), "world"};
   trial_.target = "slow_board";
   trial_.emulator = {"qemu-x86_64", "Nehalem", {{"integer", 0.125}, {"load", 0.5}}};
   trial_.profiles = {"rig", "top"};
@@ -109,9 +111,9 @@ TEST_F(Result, ReadsBackWithEveryOptionalPart) {
   for (const char* documented :
        {"\"outcome\": \"goal_reached\"", "\"exit_code\": 0", "\"st_at_end_s\": 2.481000001",
         "\"value\": 9.242", "\"steps\": 12", "\"stops\": 1200", "\"largest_overshoot_s\": 7.3e-05",
-        "\"computing_s\": 0.0025", "\"contacts\": \"not reported\"", "\"speed_m_s\": 0.25",
-        "\"consequence\": \"missing\"", "\"can_change_verdict\": true", "\"margin\": 0.25",
-        "\"deadline_s\": 1.5"})
+        "\"computing_s\": 0.0025", "\"step_s\": 0.004", "\"contacts\": \"not reported\"",
+        "\"speed_m_s\": 0.25", "\"consequence\": \"missing\"", "\"can_change_verdict\": true",
+        "\"margin\": 0.25", "\"deadline_s\": 1.5"})
     EXPECT_THAT(text, HasSubstr(documented));
   const auto begin = text.find("  \"profiles\""), end = text.find("  \"outcome\"");
   EXPECT_THAT(result_from_json(text.substr(0, begin) + text.substr(end), "f").profiles,

@@ -78,13 +78,12 @@ std::optional<std::string> clock_fault(const link::Hello& hello,
 
 std::optional<std::string> build_fault(const link::Hello& hello,
                                        const std::optional<timing::Replay>& replay) {
-  if (!replay || !replay->required_build_id() || *replay->required_build_id() == hello.build_id)
-    return std::nullopt;
+  const auto other = replay ? replay->other_build(hello.build_id, hello.build) : std::nullopt;
+  if (!other) return std::nullopt;
   return fmt::format(
-      "the program has the build id \"{}\", but the timing file is of \"{}\". An exact replay "
-      "needs "
-      "the same build; for another one, use mode = \"resampled\" or \"scaled\"",
-      hello.build_id, *replay->required_build_id());
+      "this is not the program that was recorded: {}. An exact replay needs the same program, "
+      "arguments, files and libraries; for others, use mode = \"resampled\" or \"scaled\"",
+      *other);
 }
 
 }  // namespace tether::coordinator

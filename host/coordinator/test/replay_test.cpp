@@ -24,6 +24,7 @@ class Replayed : public CoordinatorTest {
     make();
     timing::Timing timing;
     timing.build_id = "0a";
+    timing.builds[simulator_->world().uavs[0].name] = {{"argument 4", "3000000"}};
     timing.runs = {{simulator_->world().uavs[0].name, 1, kRecorded}};
     options_.uavs[0].replay.emplace(timing, timing::ReplaySetting{.mode = timing::Mode::kExact},
                                     simulator_->world().uavs[0].name, 1);
@@ -31,9 +32,10 @@ class Replayed : public CoordinatorTest {
     coordinator_ = std::make_unique<Coordinator>(*simulator_, recorder_, options_,
                                                  [this] { return now_ += tick_; });
   }
-  link::PeerId join(const std::string& build_id = "0a") {
+  link::PeerId join(const std::string& build_id = "0a", const std::string& argument = "3000000") {
     link::Hello own = hello("", link::ClockKind::kReplayed);
     own.build_id = build_id;
+    own.build = {{"argument 4", argument}};
     return server_->add_sut(own, {});
   }
   /// As a client sends the calls.
@@ -97,6 +99,17 @@ TEST_F(Replayed, RefusesAnotherBuild) {
   run();
   EXPECT_EQ(refusal(peer).reason, link::Refusal::Reason::kBadRequest);
   EXPECT_NE(refusal(peer).message.find("0b"), std::string::npos);
+}
+
+TEST_F(Replayed, RefusesTheSameBuildWithAnotherArgument) {
+  make_replay();
+  const link::PeerId peer = join("0a", "60000000");
+  hooks_.should_stop = [] { return Ending{RunEnd::kInterrupted, "enough"}; };
+  run();
+  EXPECT_EQ(refusal(peer).reason, link::Refusal::Reason::kBadRequest);
+  EXPECT_NE(refusal(peer).message.find("argument 4 was \"3000000\", is \"60000000\""),
+            std::string::npos)
+      << refusal(peer).message;
 }
 
 }  // namespace

@@ -329,7 +329,8 @@ class Judge {
     const bool is_eventually = clause.kind == Kind::kEventually;
     if (met != is_eventually || clause.condition->share < 1.0) return until;
     for (std::size_t i = places.first; i <= places.second; ++i) {
-      if (is_met(clause, margins[i] + shift) == is_eventually) return std::min(until, signals_.trace().at[i] + clause.hold);
+      if (is_met(clause, margins[i] + shift) == is_eventually)
+        return std::min(until, signals_.trace().at[i] + clause.hold);
     }
     return until;
   }

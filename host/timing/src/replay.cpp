@@ -50,6 +50,11 @@ double ratio_of(const std::string& stage, const Timing& timing,
   return old_work->second > 0.0 ? stats::mean(new_work->second) / old_work->second : 1.0;
 }
 
+Build with_id(const std::string& build_id, Build build) {
+  build.insert(build.begin(), {"the program's build id", build_id});
+  return build;
+}
+
 }  // namespace
 
 Replay::Replay(const Timing& timing, const ReplaySetting& setting, const std::string& uav,
@@ -63,8 +68,14 @@ Replay::Replay(const Timing& timing, const ReplaySetting& setting, const std::st
       refuse("build_id",
              "names no build id, which an exact replay needs. Link the program with "
              "--build-id and record it again, or use mode = \"resampled\".");
+    const auto build = timing.builds.find(uav);
+    if (build == timing.builds.end())
+      refuse("build",
+             "does not have the program's arguments, files and libraries, which an exact replay "
+             "compares: it is of an earlier version of Tether. Record the runs again, or use mode "
+             "= \"resampled\".");
     calls_ = calls_of(timing, uav, seed);
-    required_build_id_ = timing.build_id;
+    required_ = with_id(timing.build_id, build->second);
   } else if (setting.counted) {
     const auto counted = samples_of(*setting.counted, uav);
     if (setting.mode == Mode::kScaled)
@@ -82,7 +93,7 @@ Replay::Replay(const Timing& timing, const ReplaySetting& setting, const std::st
 
 void Replay::give() {
   given_.clear();
-  if (required_build_id_) {
+  if (required_) {
     if (next_ < calls_.size()) given_ = calls_[next_].stages;
     return;
   }
@@ -95,6 +106,11 @@ Duration Replay::draw(const std::string& stage, const Source& source) const {
   const auto count = static_cast<double>(source.times_ns.size());
   const auto place = static_cast<std::size_t>(random.uniform() * count);
   return Duration(std::llround(source.times_ns[place] * source.factor));
+}
+
+std::optional<std::string> Replay::other_build(const std::string& build_id,
+                                               const Build& build) const {
+  return required_ ? timing::difference(*required_, with_id(build_id, build)) : std::nullopt;
 }
 
 std::optional<std::string> Replay::take(const std::string& call,
@@ -112,7 +128,7 @@ std::optional<std::string> Replay::take(const std::string& call,
 
 std::optional<std::string> Replay::difference(const std::string& call,
                                               const std::vector<link::StageTime>& stages) const {
-  if (required_build_id_) {
+  if (required_) {
     if (next_ >= calls_.size())
       return fmt::format("call {} (\"{}\"): the recorded run ended after {} calls", next_ + 1, call,
                          calls_.size());

@@ -53,14 +53,14 @@ std::vector<std::string> warnings(const std::vector<StageRow>& rows) {
   return lines;
 }
 
-std::string to_text(const std::vector<StageRow>& rows) {
+std::string to_text(const std::vector<StageRow>& rows, std::size_t columns) {
   std::vector<std::vector<std::string>> lines = {
       {"stage", "", "count", "median ms", "95 % ms", "99 % ms", "worst ms", "share %"}};
   for (const StageRow& row : rows)
     lines.push_back({row.stage, "", std::to_string(row.count), in_ms(row.median_s),
                      in_ms(row.p95_s), in_ms(row.p99_s), in_ms(row.worst_s),
                      fixed(row.share * 100.0, 1)});
-  return text_table(lines);
+  return text_table(lines, columns);
 }
 
 }  // namespace tether::timing

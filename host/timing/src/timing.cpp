@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <tether/base/error.h>
 #include <tether/link/messages.h>
@@ -23,7 +24,35 @@ std::string clock_of(const record::SutInfo& sut) {
   return sut.clock;
 }
 
+/// Empty: not known.
+Build build_of(const Timing& timing, const std::string& uav) {
+  const auto found = timing.builds.find(uav);
+  return found == timing.builds.end() ? Build() : found->second;
+}
+
 }  // namespace
+
+std::optional<std::string> difference(const Build& was, const Build& is) {
+  constexpr std::size_t kMostNamed = 3;
+  std::vector<std::string> found;
+  const auto value_in = [](const Build& build, const std::string& name) {
+    const auto part = std::ranges::find(build, name, &link::BuildPart::name);
+    return part == build.end() ? std::string("missing") : fmt::format("\"{}\"", part->value);
+  };
+  const auto compare = [&](const std::string& name) {
+    const std::string old_value = value_in(was, name), new_value = value_in(is, name);
+    if (old_value != new_value)
+      found.push_back(fmt::format("{} was {}, is {}", name, old_value, new_value));
+  };
+  for (const link::BuildPart& part : was) compare(part.name);
+  for (const link::BuildPart& part : is)
+    if (value_in(was, part.name) == "missing") compare(part.name);
+  if (found.empty()) return std::nullopt;
+  const std::size_t more = found.size() - std::min(found.size(), kMostNamed);
+  found.resize(found.size() - more);
+  return fmt::format("{}{}", fmt::join(found, "; "),
+                     more > 0 ? fmt::format("; and {} more", more) : "");
+}
 
 Run run_of(const record::Record& record, const record::SutInfo& sut) {
   Run run{.uav = sut.uav, .seed = record.header.seed, .calls = {}};
@@ -53,8 +82,10 @@ Timing of_record(const record::Record& record, const std::filesystem::path& file
   if (header.suts.empty()) refuse(file, "suts", "has no SUT.");
   const record::SutInfo& first = header.suts.front();
   Timing timing{.scenario = header.scenario,
+                .condition = header.condition,
                 .program = first.sut,
                 .build_id = first.build_id,
+                .builds = {},
                 .board = header.target ? header.target->name : "host",
                 .clock = clock_of(first),
                 .recorded_at = recorded_at,
@@ -68,6 +99,8 @@ Timing of_record(const record::Record& record, const std::filesystem::path& file
              fmt::format("has SUTs that differ: \"{}\" and \"{}\". All must be one program with "
                          "one clock.",
                          first.sut, sut.sut));
+    for (const record::BuildPart& part : sut.build)
+      timing.builds[sut.uav].push_back({part.name, part.value});
     timing.runs.push_back(run_of(record, sut));
   }
   return timing;
@@ -115,6 +148,12 @@ void add(Timing& timing, const Timing& more, const std::filesystem::path& file) 
                          "runs of one program in one scenario on one machine.",
                          what, other, own));
   for (const Run& run : more.runs) {
+    if (const auto other = difference(build_of(timing, run.uav), build_of(more, run.uav)))
+      refuse(
+          file, run.uav,
+          fmt::format("has another program of UAV \"{}\" than the files before it: {}. Give only "
+                      "runs of one program with the same arguments, files and libraries.",
+                      run.uav, *other));
     const auto is_same = [&](const Run& own) { return own.uav == run.uav && own.seed == run.seed; };
     if (std::ranges::any_of(timing.runs, is_same))
       refuse(
@@ -122,7 +161,19 @@ void add(Timing& timing, const Timing& more, const std::filesystem::path& file) 
           fmt::format("has seed {} of UAV \"{}\" again. Give each run once.", run.seed, run.uav));
     timing.runs.push_back(run);
   }
+  if (more.condition != timing.condition) timing.condition.clear();
   timing.recorded_at = std::max(timing.recorded_at, more.recorded_at);
+}
+
+bool is_between_calls(const Timing& timing, const std::string& stage) {
+  for (const Run& run : timing.runs) {
+    std::string previous = "start";
+    for (const Call& call : run.calls) {
+      if (link::stage_between(previous, call.call) == stage) return true;
+      previous = call.call;
+    }
+  }
+  return false;
 }
 
 std::map<std::string, std::vector<double>> samples_of(const Timing& timing,

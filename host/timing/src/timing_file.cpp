@@ -13,18 +13,21 @@
 #include <tether/timing/timing.h>
 
 // A timing file is text. Each line is a key and its values, separated by tabs: first what was
-// timed, then each run with a line for each call, then the number of calls.
+// timed, the parts of each UAV's build, then each run with a line for each call, then the number of
+// calls.
 namespace tether::timing {
 namespace {
 
 constexpr std::string_view kMagic = "tether-timing";
-constexpr int kSchema = 1;
+constexpr int kSchema = 2;  // 1 has no builds and no condition
 
 /// The keys of the texts at the beginning, in their order.
 constexpr std::pair<std::string_view, std::string Timing::*> kTexts[] = {
-    {"scenario", &Timing::scenario}, {"program", &Timing::program},
-    {"build_id", &Timing::build_id}, {"board", &Timing::board},
-    {"clock", &Timing::clock},       {"recorded", &Timing::recorded_at}};
+    {"scenario", &Timing::scenario},   {"program", &Timing::program},
+    {"build_id", &Timing::build_id},   {"board", &Timing::board},
+    {"clock", &Timing::clock},         {"recorded", &Timing::recorded_at},
+    {"condition", &Timing::condition},  // not in schema 1
+};
 
 using Words = std::vector<std::string_view>;
 
@@ -34,15 +37,21 @@ class Parser {
       : text_(std::move(text)), file_(file) {}
 
   Timing parse() {
-    read_schema();
+    const int schema = read_schema();
     Timing timing;
-    for (const auto& [key, member] : kTexts) timing.*member = text_of(key);
+    for (const auto& [key, member] : kTexts)
+      if (schema > 1 || member != &Timing::condition) timing.*member = text_of(key);
     Words words = next();
     for (; words[0] == "counted"; words = next()) {
       require_words(words, 3);
       const auto value = number<double>(words[2]);
       if (!(value >= 0.0)) fail(fmt::format("counted work is \"{}\", not a number ≥ 0", words[2]));
       timing.counted_ns[std::string(words[1])] = value;
+    }
+    for (; words[0] == "build"; words = next()) {
+      require_words(words, 4);
+      timing.builds[std::string(words[1])].push_back(
+          {std::string(words[2]), std::string(words[3])});
     }
     std::size_t calls = 0;
     for (; words[0] != "end"; words = next()) {
@@ -71,16 +80,18 @@ class Parser {
     throw Error(ErrorCode::kBadFile, {file_.string(), line_}, what + ".").about(file_.string());
   }
 
-  void read_schema() {
+  int read_schema() {
     if (text_.empty()) fail("the file is empty. Write it with: tether timing RECORD... --out FILE");
     const Words words = next();
     if (words[0] != kMagic) fail("this is not a timing file, which `tether timing --out` writes");
     require_words(words, 2);
-    if (const int schema = number<int>(words[1]); schema != kSchema)
-      fail(
-          fmt::format("the file has schema {}, and this version of Tether reads schema {}. Write "
-                      "it again with this version",
-                      schema, kSchema));
+    const int schema = number<int>(words[1]);
+    if (schema < 1 || schema > kSchema)
+      fail(fmt::format(
+          "the file has schema {}, and this version of Tether reads schemas up to {}. Write "
+          "it again with this version",
+          schema, kSchema));
+    return schema;
   }
 
   /// The words of the next line.
@@ -176,6 +187,9 @@ void write_timing(const std::filesystem::path& file, const Timing& timing) {
   for (const auto& [key, member] : kTexts) append_line(out, {std::string(key), timing.*member});
   for (const auto& [stage, work_ns] : timing.counted_ns)
     append_line(out, {"counted", stage, fmt::format("{}", work_ns)});
+  for (const auto& [uav, build] : timing.builds)
+    for (const link::BuildPart& part : build)
+      append_line(out, {"build", uav, part.name, part.value});
   std::size_t calls = 0;
   for (const Run& run : timing.runs) {
     append_line(out, {"run", run.uav, std::to_string(run.seed)});

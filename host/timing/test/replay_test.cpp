@@ -26,7 +26,7 @@ Times taken(const Replay& replay, const std::vector<std::string>& stages) {
 TEST(Replay, ExactGivesEachCallItsTime) {
   const Timing timing = sample_timing();
   Replay replay(timing, {.mode = Mode::kExact}, "uav1", 2);
-  EXPECT_EQ(replay.required_build_id(), "0a");
+  EXPECT_EQ(replay.other_build("0a", timing.builds.at("uav1")), std::nullopt);
   for (const Call& call : timing.runs[1].calls) {
     ASSERT_EQ(replay.given(), call.stages);
     ASSERT_EQ(replay.take(call.call, call.stages), std::nullopt);
@@ -133,6 +133,11 @@ TEST(Replay, RefusesTimingThatDoesNotFit) {
   };
   EXPECT_EQ(subject_of({}, "uav9", 1), "uav9");
   EXPECT_EQ(subject_of({.mode = Mode::kExact}, "uav1", 9), "uav1");
+  Timing old = timing;
+  old.builds.clear();
+  EXPECT_NO_THROW(Replay(old, {}, "uav1", 1));
+  timing.builds.swap(old.builds);
+  EXPECT_EQ(subject_of({.mode = Mode::kExact}, "uav1", 1), "build");
   timing.build_id.clear();
   EXPECT_EQ(subject_of({.mode = Mode::kExact}, "uav1", 1), "build_id");
   for (std::size_t i = 0; i <= link::kMaxStages; ++i)

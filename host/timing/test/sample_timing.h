@@ -13,8 +13,10 @@ namespace tether::timing {
 inline Timing sample_timing(std::size_t runs = 2, std::size_t rounds = 30,
                             double detect_ns = 80e6) {
   Timing timing{.scenario = "face_anchor",
+                .condition = "target",
                 .program = "sut 1.0",
                 .build_id = "0a",
+                .builds = {{"uav1", {{"argument 1", "30"}, {"library libx.so", "0b"}}}},
                 .board = "pi",
                 .clock = "cpu",
                 .recorded_at = "2026-11-20T10:00:00Z",

@@ -42,17 +42,18 @@ TEST_F(TimingFile, NamesTheLineOfAFault) {
   write_timing(file_, sample_timing(1, 2));
   const std::string whole = os::read_file(file_);
   const std::tuple<const char*, const char*, int> faults[] = {
-      {"tether-timing\t1", "tether-timing\t2", 1},
-      {"tether-timing\t1", "[scenario]", 1},
+      {"tether-timing\t2", "tether-timing\t3", 1},
+      {"tether-timing\t2", "[scenario]", 1},
       {"scenario", "world", 2},
-      {"run\tuav1\t1", "run\tuav1\t-1", 8},
-      {"run\tuav1\t1", "fly\tuav1\t1", 8},
-      {"call\tcamera\t", "call\tcamera\tlost\t", 9},
-      {"call\tcamera\tstart to camera\t", "call\tcamera\tstart to camera\t-", 9},
-      {"\tdetect\t", "\tcamera to command\t", 10},
-      {"end\t4", "end\t5", 13},
-      {"end\t4\n", "end\t4\nmore\n", 13},
-      {"run\tuav1\t1", "counted\tdetect\t-1\nrun\tuav1\t1", 8}};
+      {"run\tuav1\t1", "run\tuav1\t-1", 11},
+      {"run\tuav1\t1", "fly\tuav1\t1", 11},
+      {"call\tcamera\t", "call\tcamera\tlost\t", 12},
+      {"call\tcamera\tstart to camera\t", "call\tcamera\tstart to camera\t-", 12},
+      {"\tdetect\t", "\tcamera to command\t", 13},
+      {"end\t4", "end\t5", 16},
+      {"end\t4\n", "end\t4\nmore\n", 16},
+      {"build\tuav1\targument 1", "counted\tdetect\t-1\nbuild\tuav1\targument 1", 9},
+      {"run\tuav1\t1", "build\tuav1\nrun\tuav1\t1", 11}};
   for (const auto& [found, planted, line] : faults) {
     std::string text = whole;
     text.replace(text.find(found), std::string_view(found).size(), planted);
@@ -60,6 +61,18 @@ TEST_F(TimingFile, NamesTheLineOfAFault) {
     const Error error = bad_file_error([&] { read_timing(file_); });
     EXPECT_EQ(error.where(), (FileLocation{file_.string(), line})) << planted;
   }
+}
+
+// Its times are still good for mode = "resampled".
+TEST_F(TimingFile, ReadsSchemaOneWhichHasNoBuilds) {
+  Timing timing = sample_timing();
+  timing.builds.clear();
+  timing.condition.clear();
+  write_timing(file_, timing);
+  std::string text = os::read_file(file_);
+  text.replace(text.find("\t2\n"), 3, "\t1\n");
+  write(text.erase(text.find("condition\t\n"), 11));
+  EXPECT_EQ(read_timing(file_), timing);
 }
 
 }  // namespace

@@ -28,6 +28,7 @@ record::Record sample_record() {
   sut.clock = "cpu";
   sut.cpu_factor = 6.0;
   sut.build_id = "0a";
+  sut.build = {{"argument 1", "30"}};
   record.header.suts = {sut};
   record.interactions = {{{}, 0, interaction("sensor", 10, 40)},
                          {{}, 1, interaction("command", 65, 65)}};
@@ -88,8 +89,32 @@ TEST(Timing, AddsRunsOfTheSameProgramOnly) {
   other.build_id = "0b";
   EXPECT_EQ(subject_of(other), "build id");
   other = more;
+  other.runs[0].seed = 9;
+  other.builds["uav1"][0].value = "60";
+  EXPECT_EQ(subject_of(other), "uav1");
+  other = more;
   other.scenario = "move_forward";
   EXPECT_EQ(subject_of(other), "scenario");
+}
+
+TEST(Timing, KnowsStagesThatTheProgramDidNotName) {
+  const Timing timing = sample_timing();
+  EXPECT_TRUE(is_between_calls(timing, "start to camera"));
+  EXPECT_TRUE(is_between_calls(timing, "camera to command"));
+  EXPECT_FALSE(is_between_calls(timing, "detect"));
+}
+
+TEST(Timing, NamesWhatDiffersBetweenBuilds) {
+  const Build was = {{"argument 1", "--fast"}, {"argument 2", "3000000"}, {"library a.so", "0a"}};
+  EXPECT_EQ(difference(was, was), std::nullopt);
+  Build is = was;
+  is[1].value = "60000000";
+  EXPECT_EQ(difference(was, is), "argument 2 was \"3000000\", is \"60000000\"");
+  is = {was[0], was[1], {"library b.so", "0b"}};
+  EXPECT_EQ(difference(was, is),
+            "library a.so was \"0a\", is missing; library b.so was missing, is \"0b\"");
+  EXPECT_EQ(difference({}, {{"a", ""}, {"b", ""}, {"c", ""}, {"d", ""}, {"e", ""}}),
+            "a was missing, is \"\"; b was missing, is \"\"; c was missing, is \"\"; and 2 more");
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstring>
+#include <vector>
 
 #include <elf.h>
 #include <link.h>
@@ -42,17 +43,30 @@ std::string find_build_id(const char* note, std::size_t size) {
   return "";
 }
 
-/// The first object is the program.
-int take_program(dl_phdr_info* object, std::size_t, void* out) {
-  auto& id = *static_cast<std::string*>(out);
-  for (int i = 0; i < object->dlpi_phnum && id.empty(); ++i) {
-    const ElfW(Phdr)& segment = object->dlpi_phdr[i];
+std::string build_id_of(const dl_phdr_info& object) {
+  std::string id;
+  for (int i = 0; i < object.dlpi_phnum && id.empty(); ++i) {
+    const ElfW(Phdr)& segment = object.dlpi_phdr[i];
     if (segment.p_type != PT_NOTE) continue;
     // NOLINTNEXTLINE(performance-no-int-to-ptr): the loader gives addresses as numbers
-    id = find_build_id(reinterpret_cast<const char*>(object->dlpi_addr + segment.p_vaddr),
+    id = find_build_id(reinterpret_cast<const char*>(object.dlpi_addr + segment.p_vaddr),
                        segment.p_memsz);
   }
+  return id;
+}
+
+/// The first object is the program.
+int take_program(dl_phdr_info* object, std::size_t, void* out) {
+  *static_cast<std::string*>(out) = build_id_of(*object);
   return 1;
+}
+
+/// The program and the kernel's part of it have no file name.
+int take_library(dl_phdr_info* object, std::size_t, void* out) {
+  const std::string file = object->dlpi_name != nullptr ? object->dlpi_name : "";
+  if (file.find('/') != std::string::npos)
+    static_cast<std::vector<LoadedLibrary>*>(out)->push_back({file, build_id_of(*object)});
+  return 0;
 }
 
 }  // namespace
@@ -61,6 +75,12 @@ std::string build_id() {
   std::string id;
   ::dl_iterate_phdr(take_program, &id);
   return id;
+}
+
+std::vector<LoadedLibrary> loaded_libraries() {
+  std::vector<LoadedLibrary> libraries;
+  ::dl_iterate_phdr(take_library, &libraries);
+  return libraries;
 }
 
 }  // namespace tether::client

@@ -5,6 +5,8 @@
 #include <utility>
 #include <variant>
 
+#include <unistd.h>
+
 #include <tether/client/simulated_vehicle.h>
 
 namespace tether::client {
@@ -19,11 +21,14 @@ link::Hello hello_for(const ConnectOptions& options) {
   hello.computing = options.time->computing();
   hello.token = options.token;
   hello.build_id = build_id();
+  hello.process = static_cast<std::uint32_t>(::getpid());
+  hello.build = build_parts(own_arguments(), loaded_libraries());
   return hello;
 }
 
-Result<link::Welcome> shake_hands(link::Channel& channel, const ConnectOptions& options) {
-  const Status sent = channel.send(hello_for(options));
+Result<link::Welcome> shake_hands(link::Channel& channel, const link::Hello& hello,
+                                  const ConnectOptions& options) {
+  const Status sent = channel.send(hello);
   if (!sent && sent.failure().kind == Failure::Kind::kInvalid) return sent.failure();
   // Even if the Hello did not go out: the coordinator may have refused the connection itself.
   auto message = channel.receive_within(options.welcome_timeout);
@@ -77,12 +82,9 @@ Duration progress_period(const ConnectOptions& options, const link::Welcome& wel
   return link::repeats(options.time->kind()) ? Duration::zero() : options.progress_period;
 }
 
-}  // namespace
-
-Result<std::unique_ptr<Vehicle>> connect(std::unique_ptr<link::Channel> channel,
-                                         ConnectOptions options) {
-  if (!options.time) options.time = make_wall_source();
-  auto welcome = shake_hands(*channel, options);
+Result<std::unique_ptr<Vehicle>> join(std::unique_ptr<link::Channel> channel,
+                                      const link::Hello& hello, ConnectOptions options) {
+  auto welcome = shake_hands(*channel, hello, options);
   if (!welcome) return welcome.failure();
   if (const Status good = check_free_running(*welcome, *options.time); !good) return good.failure();
   const Duration period = progress_period(options, *welcome);
@@ -90,11 +92,23 @@ Result<std::unique_ptr<Vehicle>> connect(std::unique_ptr<link::Channel> channel,
       std::move(channel), std::move(*welcome), std::move(options.time), make_wall_timer(), period));
 }
 
+}  // namespace
+
+Result<std::unique_ptr<Vehicle>> connect(std::unique_ptr<link::Channel> channel,
+                                         ConnectOptions options) {
+  if (!options.time) options.time = make_wall_source();
+  const link::Hello hello = hello_for(options);
+  return join(std::move(channel), hello, std::move(options));
+}
+
 Result<std::unique_ptr<Vehicle>> connect(ConnectOptions options) {
   if (!options.exec_socket.empty()) return connect_to_exec(options);
+  if (!options.time) options.time = make_wall_source();
+  // Before there is a connection, on which the coordinator expects Hello soon: files are read.
+  const link::Hello hello = hello_for(options);
   auto channel = link::connect_tcp(options.address, options.connect_timeout);
   if (!channel) return channel.failure();
-  return connect(std::move(*channel), std::move(options));
+  return join(std::move(*channel), hello, std::move(options));
 }
 
 }  // namespace tether::client

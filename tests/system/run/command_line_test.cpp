@@ -21,6 +21,22 @@ TEST(Help, HasAnExampleOfEachCommand) {
   }
 }
 
+// The scripts themselves: apps/tether/test/completion_test.cpp.
+TEST(Completion, OfBashIsMadeFromTheOptionsOfEachProgram) {
+  const auto completed = [](const std::filesystem::path& program, const std::string& words) {
+    const std::string name = program.filename();
+    std::string function = "_" + name;
+    std::ranges::replace(function, '-', '_');
+    const std::string code = "source <('" + program.string() + "' completion bash)\nCOMP_WORDS=(" +
+                             name + " " + words + ")\nCOMP_CWORD=$((${#COMP_WORDS[@]} - 1))\n" +
+                             function + "\necho \"${COMPREPLY[@]}\"";
+    return run({{"bash", "-c", code}}).out;
+  };
+  EXPECT_EQ(completed(tether_program(), "timing a --ju"), "--junit\n");
+  EXPECT_EQ(completed(tether_program(), "size a --axis ''"), "slowdown uavs\n");
+  EXPECT_EQ(completed(sut_program(), "face_anchor --prec"), "--precision-deg\n");
+}
+
 TEST(Version, IsOneLineOfEachProgram) {
   for (const auto& program : {tether_program(), sut_program()}) {
     const Output output = run({{program, "--version"}});

@@ -78,10 +78,10 @@ TEST(Demo, FliesTheTableOfTheReadme) {
   const TempFolder folder;
   write_text(folder / "demo.toml",
              substituted(read_text(TETHER_SOURCE_DIR "/data/campaigns/demo.toml"),
-                         {{", \"target, no sync\"]", "]"},
-                          {"../scenarios", TETHER_SOURCE_DIR "/data/scenarios"}}));
+                         {{", \"target, no sync\"]", "]"}}));
   const Output flown =
-      run(tether({"campaign", folder / "demo.toml", "--out", folder / "out", "--jobs", "2"}),
+      run(with(tether({"campaign", folder / "demo.toml", "--out", folder / "out", "--jobs", "2"}),
+               {}, {{"COLUMNS", "200"}}),
           std::chrono::minutes(9));
   ASSERT_EQ(flown.code, 0) << flown.err;
   const std::size_t table = flown.out.find("Table III");

@@ -76,6 +76,16 @@ TEST_F(TimingRun, IsReplayedToTheNanosecond) {
   EXPECT_TRUE(result["audit"]["passed"]) << result["audit"]["summary"];
 }
 
+// The build id is the same: what it is asked to do is not.
+TEST_F(TimingRun, IsRefusedToTheSameProgramWithAnotherArgument) {
+  fly("good", "clock = \"cpu\"", "measured");
+  ASSERT_EQ(timing({folder_ / "measured", "--out", folder_ / "a.timing"}).code, 0);
+  const auto slower = scenario("slower", replayed("mode = \"exact\""));
+  const Output output = run(tether({"run", slower, "--out", folder_ / "slower", "--quiet"}, mark_));
+  EXPECT_EQ(output.code, 3);
+  EXPECT_THAT(output.err, HasSubstr("was \"good\", is \"slower\""));
+}
+
 // The planted change: the stage "work" does a fifth more. No run on the "board" has it.
 TEST_F(TimingRun, ShowsASlowerStageWithoutTheBoard) {
   write_text(folder_ / "target.toml",
@@ -99,7 +109,12 @@ TEST_F(TimingRun, ShowsASlowerStageWithoutTheBoard) {
   EXPECT_NEAR(median_ns(folder_ / "scaled", "work") / median_ns(folder_ / "resampled", "work"), 1.2,
               0.02);
   EXPECT_EQ(timing({folder_ / "new", "--against", folder_ / "old", "--limit", "10"}).code, 1);
-  EXPECT_EQ(timing({folder_ / "new", "--against", folder_ / "old", "--limit", "30"}).code, 0);
+  const Output change = timing({folder_ / "new", "--against", folder_ / "old", "--limit", "30",
+                                "--json", "--junit", folder_ / "timing.xml"});
+  EXPECT_EQ(change.code, 0);
+  EXPECT_EQ(nlohmann::json::parse(change.out)["is_beyond_limit"], false);
+  EXPECT_THAT(read_text(folder_ / "timing.xml"), HasSubstr("failures=\"0\""));
+  EXPECT_EQ(timing({folder_ / "new", "--junit", folder_ / "timing.xml"}).code, 2);
 }
 
 }  // namespace

@@ -376,31 +376,4 @@ std::vector<Answer> headlines_of(const std::vector<std::vector<Verdict>>& groups
   return answers;
 }
 
-std::string answer_text(const std::vector<Answer>& answers, const std::vector<std::string>& advice,
-                        Markup markup) {
-  const bool is_markdown = markup == Markup::kMarkdown;
-  std::string text;
-  for (const Answer& answer : answers)
-    text += fmt::format("{0}{1}{0}{2}\n{3}", is_markdown ? "**" : "", answer.lead, answer.rest,
-                        is_markdown ? "\n" : "");
-  for (std::string one : advice) {
-    if (!is_markdown) std::erase(one, '`');
-    text += fmt::format("{}{}\n", is_markdown ? "- " : "  → ", one);
-  }
-  return text + "\n";
-}
-
-std::string verdict_text(const std::vector<Verdict>& verdicts, Markup markup) {
-  const auto groups = by_scenario(verdicts);
-  const std::vector<Answer> headlines = headlines_of(groups);
-  std::string text = headlines.empty() ? "" : answer_text(headlines, {}, markup);
-  for (const std::vector<Verdict>& points : groups) {
-    if (groups.size() > 1)
-      text += fmt::format("{}{}\n\n", markup == Markup::kMarkdown ? "## " : "",
-                          points.front().scenario);
-    text += answer_text(answers_of(points), advice_of(points), markup);
-  }
-  return text;
-}
-
 }  // namespace tether::report

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <tether/base/counted.h>
 #include <tether/campaign/campaign_plan.h>
 #include <tether/campaign/copies.h>
 #include <tether/campaign/statistics.h>
@@ -45,8 +46,8 @@ std::string than(double slowdown) {
 Answer main_answer(const SizeReport& report) {
   const SizedCondition& sized = report.synchronised;
   const sizing::Threshold& threshold = sized.answer.threshold;
-  const std::string evidence =
-      fmt::format("{}; {} flights.", percent(report.question.confidence), sized.flights.size());
+  const std::string evidence = fmt::format("{}; {}.", percent(report.question.confidence),
+                                           counted(sized.flights.size(), "flight"));
   if (sized.answer.is_below) {
     const bool is_for_speed = speed_matters(sized);
     return {is_for_speed ? "Not sufficient" : "Goal missed",
@@ -136,14 +137,14 @@ std::vector<Answer> size_answers(const SizeReport& report) {
   if (!answer.is_narrow)
     answers.push_back(
         {"Less sure than asked",
-         fmt::format(
-             ": the interval is wider than a factor of {}, because {}.",
-             digits(report.question.interval),
-             copies >= kMostCopies ? "the seeds change too little"
-             : report.synchronised.flights.size() + copies + report.not_flown.size() >=
-                     report.most_flights
-                 ? fmt::format("{} flights are the most that were allowed", report.most_flights)
-                 : "slowdowns in between could not be decided")});
+         fmt::format(": the interval is wider than a factor of {}, because {}.",
+                     digits(report.question.interval),
+                     copies >= kMostCopies ? "the seeds change too little"
+                     : report.synchronised.flights.size() + copies + report.not_flown.size() >=
+                             report.most_flights
+                         ? fmt::format("no more than {} were allowed",
+                                       counted(report.most_flights, "flight"))
+                         : "slowdowns in between could not be decided")});
   if (copies > 0)
     answers.push_back({"Not counted", fmt::format(": {} more, each a copy of one at the same "
                                                   "slowdown, because its seed changes nothing.",

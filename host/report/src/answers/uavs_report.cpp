@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <tether/base/counted.h>
 #include <tether/campaign/campaign_plan.h>
 #include <tether/campaign/copies.h>
 #include <tether/os/shell_word.h>
@@ -91,10 +92,9 @@ std::size_t flights_of(const UavsReport& report) {
 std::vector<Answer> uavs_answers(const UavsReport& report) {
   std::vector<Answer> answers = {
       {lead_of(report),
-       fmt::format(" (“{}” under “{}”, {} of the flights wanted): {}; {}; {} flights.",
-                   report.board, report.condition, in_percent(report.question.success),
-                   evidence_of(report), in_percent(report.question.confidence),
-                   flights_of(report))}};
+       fmt::format(" (“{}” under “{}”, {} of the flights wanted): {}; {}; {}.", report.board,
+                   report.condition, in_percent(report.question.success), evidence_of(report),
+                   in_percent(report.question.confidence), counted(flights_of(report), "flight"))}};
   if (const auto& pace = report.pace.pace;
       pace && !pace->shared_board.empty() && !pace->camera.empty())
     answers.push_back(
@@ -104,10 +104,10 @@ std::vector<Answer> uavs_answers(const UavsReport& report) {
   const std::size_t copies = copies_in(report);
   if (!report.answer.is_decided())
     answers.push_back(
-        {"Less sure than asked",
-         copies >= kMostCopies
-             ? ": the seeds change too little."
-             : fmt::format(": {} flights are the most that were allowed.", report.most_flights)});
+        {"Less sure than asked", copies >= kMostCopies
+                                     ? ": the seeds change too little."
+                                     : fmt::format(": no more than {} were allowed.",
+                                                   counted(report.most_flights, "flight"))});
   if (copies > 0)
     answers.push_back({"Not counted", fmt::format(": {}, each a copy of another one, because its "
                                                   "seed changes nothing.",

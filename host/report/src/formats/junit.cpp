@@ -12,6 +12,7 @@
 
 #include <tether/campaign/campaign_plan.h>
 #include <tether/report/junit.h>
+#include <tether/report/timing_page.h>
 #include <tether/report/uavs_report.h>
 #include <tether/report/verdict.h>
 
@@ -231,6 +232,29 @@ std::string to_junit(const UavsReport& report, const std::filesystem::path& fold
   }
   answer.output += "flights: " + folder.string() + "\n";
   suite.cases = {answer};
+  return text_of(std::vector<Suite>{suite});
+}
+
+std::string change_junit(const timing::Timing& now, const timing::Timing& before,
+                         const timing::Comparison& comparison, double limit) {
+  Suite suite{.name = "timing of " + now.scenario, .machine = now.board};
+  if (now.recorded_at.size() >= suite.started_at.size())
+    suite.started_at = now.recorded_at.substr(0, suite.started_at.size());
+  suite.properties = {{"build", now.build_id}, {"build before", before.build_id}};
+  for (const timing::StageChange& stage : comparison.stages) {
+    const std::string line =
+        timing::to_text({.stages = {stage}, .added = {}, .removed = {}}, &limit);
+    const bool is_beyond = stage.change > limit;
+    suite.cases.push_back({.trial = "stages",
+                           .name = stage.stage,
+                           .kind = is_beyond ? "failure" : "",
+                           .type = "stage",
+                           .message = is_beyond ? line.substr(0, line.size() - 1) : "",
+                           .output = line});
+  }
+  const std::string others = timing::to_text(
+      {.stages = {}, .added = comparison.added, .removed = comparison.removed}, &limit);
+  if (!others.empty()) suite.properties.emplace_back("other stages", others);
   return text_of(std::vector<Suite>{suite});
 }
 

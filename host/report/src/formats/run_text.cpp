@@ -139,10 +139,11 @@ Rows rows_of_failure(const campaign::TrialResult& result, const std::filesystem:
 
 }  // namespace
 
-std::string run_text(const campaign::TrialResult& result, const std::filesystem::path& folder) {
+std::string run_text(const campaign::TrialResult& result, const std::filesystem::path& folder,
+                     Markup markup) {
   const bool has_failed = result.outcome == campaign::Outcome::kFailed;  // its reason is an error
   const std::string head =
-      verdict_text(verdicts_of(results_of_run(result), folder), Markup::kPlain) +
+      verdict_text(verdicts_of(results_of_run(result), folder), markup) +
       fmt::format("{} under \"{}\", seed {}: {}{}\n", result.scenario, result.condition,
                   result.seed, campaign::name(result.outcome),
                   has_failed ? "" : ": " + result.reason);

@@ -46,22 +46,24 @@ std::string outcome_sentences(const campaign::TrialResult& trial) {
 
 std::string plots_part(FigureMaker& figures, const record::Record& record) {
   std::vector<PlottedRun> runs;
-  std::string html = element("h2", "The flight");
+  std::string times;
   for (const record::SutInfo& sut : record.header.suts) {
     const PlottedRun run{&record, sut.uav, sut.uav, runs.size()};
     runs.push_back(run);
-    html += figures.plot(
+    times += figures.plot(
         timeline_plot(run, Extent::kFirstInteractions),
         fmt::format("Simulated and execution time of {} over wall time: first interactions.",
                     sut.uav));
-    html += figures.plot(
+    times += figures.plot(
         timeline_plot(run, Extent::kWhole),
         fmt::format("Simulated and execution time of {} over wall time: whole run.", sut.uav));
-    html += figures.plot(lag_plot(run),
-                         fmt::format("Lag ε = ET − ST when each request of {} arrived.", sut.uav));
+    times += figures.plot(lag_plot(run),
+                          fmt::format("Lag ε = ET − ST when each request of {} arrived.", sut.uav));
   }
-  html += figures.plot(path_plot(runs), fmt::format("Path, seen from above. {}", kPathCaption));
-  return html;
+  const std::string path =
+      figures.plot(path_plot(runs), fmt::format("Path, seen from above. {}", kPathCaption));
+  return element("h2", "The flight") + path +
+         folded("How the simulation kept up with the program", times);
 }
 
 constexpr std::size_t kMostContacts = 100;

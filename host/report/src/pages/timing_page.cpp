@@ -62,9 +62,14 @@ std::vector<std::string> timing_advice(const timing::Timing& timing,
   std::vector<std::string> advice;
   if (rows.empty()) return advice;
   const timing::StageRow& most = rows.front();
-  advice.push_back(
-      fmt::format("Speed up “{}” first: at half its time, all computing takes {:.0f} % less.",
-                  most.stage, 50.0 * most.share));
+  const bool is_between = timing::is_between_calls(timing, most.stage);
+  advice.push_back(fmt::format("{}: at half its time, all computing takes {:.0f} % less.",
+                               is_between
+                                   ? fmt::format("Mark stages in what the program computes between "
+                                                 "its calls (“{}”), and speed up the largest first",
+                                                 most.stage)
+                                   : fmt::format("Speed up the stage “{}” first", most.stage),
+                               50.0 * most.share));
   if (most.count < timing::kFewSamples)
     advice.push_back(
         fmt::format("Record more runs: “{}” has only {} of the {} samples that its "
@@ -72,9 +77,14 @@ std::vector<std::string> timing_advice(const timing::Timing& timing,
                     most.stage, most.count, timing::kFewSamples));
   const std::string how =
       timing.clock == "wall"
-          ? "`tether size`, with a condition that replays these times (`clock = \"replayed\"`)."
-          : fmt::format("`tether size {}` (for your own scenario: its file).",
-                        os::shell_word(timing.scenario));
+          ? std::string(
+                "`tether size`, with a condition that replays these times (`clock = "
+                "\"replayed\"`).")
+          : fmt::format(
+                "`tether size SCENARIO{}`, where SCENARIO is the file or the name of the "
+                "scenario “{}”.",
+                timing.condition.empty() ? "" : " --condition " + os::shell_word(timing.condition),
+                timing.scenario);
   advice.push_back(
       "Times alone do not show whether the computer is fast enough. To find its headroom: " + how);
   return advice;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include <tether/base/text_table.h>
 #include <tether/report/table.h>
 
 // Three forms of a table. Text is aligned by the widths of all columns; Markdown and CSV have one
@@ -10,14 +11,8 @@ namespace {
 
 constexpr std::size_t kGap = 2;
 
-// Characters on the terminal: UTF-8 continuation bytes do not count.
-std::size_t width_of(const std::string& text) {
-  return static_cast<std::size_t>(std::ranges::count_if(
-      text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0u) != 0x80u; }));
-}
-
 std::string padding(const std::string& text, std::size_t width) {
-  const std::size_t used = width_of(text);
+  const std::size_t used = columns_of(text);
   return std::string(width > used ? width - used : 0, ' ');
 }
 
@@ -49,13 +44,14 @@ std::size_t span_width(const std::vector<std::size_t>& widths, std::size_t first
 std::vector<std::size_t> column_widths(const Table& table) {
   std::vector<std::size_t> widths(column_count(table), 0);
   for (const auto& row : table.rows) {
-    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], width_of(row[i]));
+    for (std::size_t i = 0; i < row.size(); ++i)
+      widths[i] = std::max(widths[i], columns_of(row[i]));
   }
   for (auto row = table.headings.rbegin(); row != table.headings.rend(); ++row) {
     std::size_t first = 0;
     for (const Heading& heading : *row) {
       const std::size_t have = span_width(widths, first, heading.columns);
-      const std::size_t need = width_of(heading.text);
+      const std::size_t need = columns_of(heading.text);
       if (need > have) widths[first + heading.columns - 1] += need - have;
       first += heading.columns;
     }
@@ -138,11 +134,9 @@ std::string csv_row(const std::vector<std::string>& cells) {
   return line + "\r\n";
 }
 
-}  // namespace
-
-std::string to_text(const Table& table) {
-  const std::vector<std::size_t> widths = column_widths(table);
-  std::string text = table.title.empty() ? "" : table.title + "\n\n";
+/// Headings, a rule and the rows.
+std::string aligned_text(const Table& table, const std::vector<std::size_t>& widths) {
+  std::string text;
   for (const auto& row : table.headings) {
     const std::string line = heading_line(row, widths, table.text_columns);
     if (line != "\n") text += line;
@@ -152,6 +146,19 @@ std::string to_text(const Table& table) {
     text += "\n";
   }
   for (const auto& row : table.rows) text += row_line(row, widths, table.text_columns);
+  return text;
+}
+
+}  // namespace
+
+std::string to_text(const Table& table, std::size_t columns) {
+  const std::vector<std::size_t> widths = column_widths(table);
+  std::string text = table.title.empty() ? "" : table.title + "\n\n";
+  if (!widths.empty() && span_width(widths, 0, widths.size()) > columns) {
+    text += text_lists(joined_headings(table), table.rows, columns);
+  } else {
+    text += aligned_text(table, widths);
+  }
   if (!table.notes.empty()) text += "\n";
   for (const std::string& note : table.notes) text += note + "\n";
   return text;

@@ -9,6 +9,7 @@
 #include <tether/os/text_file.h>
 #include <tether/report/junit.h>
 #include <tether/report/page.h>
+#include <tether/report/timing_page.h>
 
 namespace tether::report {
 namespace {
@@ -99,6 +100,24 @@ TEST_F(Junit, OfASizeHasACaseForTheAnswerAndEachBoard) {
 TEST_F(Junit, OfWhatEndedBeforeThereWasAResult) {
   const XMLElement& all = suites(junit_of_error("a.toml", "a.toml:1: \"x\" <is> unknown"));
   EXPECT_THAT(cases_of(*all.FirstChildElement()), ElementsAre("outcome: error"));
+}
+
+TEST_F(Junit, AStageThatIsSlowerThanItsLimitFails) {
+  timing::Timing now;
+  now.scenario = "face_anchor";
+  now.board = "pi";
+  now.recorded_at = "2026-11-20T10:00:00Z";
+  const timing::Comparison change{
+      .stages = {{.stage = "detect <1>", .change = 0.2, .low = 0.1, .high = 0.3},
+                 {.stage = "decide", .change = 0.05, .low = 0.0, .high = 0.1}},
+      .added = {"track"},
+      .removed = {}};
+  const XMLElement& suite = *suites(change_junit(now, now, change, 0.1)).FirstChildElement();
+  EXPECT_STREQ(suite.Attribute("name"), "timing of face_anchor");
+  EXPECT_STREQ(suite.Attribute("failures"), "1");
+  EXPECT_THAT(cases_of(suite), ElementsAre("detect <1>: failure", "decide"));
+  EXPECT_STREQ(suite.FirstChildElement("testcase")->FirstChildElement()->Attribute("message"),
+               "detect <1> +20 % [+10, +30], beyond the limit of +10 %");
 }
 
 }  // namespace

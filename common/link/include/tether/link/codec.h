@@ -17,9 +17,9 @@ inline constexpr std::size_t kFrameHeaderBytes = 4;
 inline constexpr std::uint32_t kMaxReplyBytes = 128u << 20;
 /// Largest frame towards the coordinator: messages of a SUT are short.
 inline constexpr std::uint32_t kMaxRequestBytes = 1u << 20;
-/// Largest first frame towards the coordinator: four times the longest Hello of this version. It
-/// limits the memory for peers that are not authenticated.
-inline constexpr std::uint32_t kMaxHelloBytes = 4u << 10;
+/// Largest first frame towards the coordinator. It limits the memory for peers that are not
+/// authenticated.
+inline constexpr std::uint32_t kMaxHelloBytes = 32u << 10;
 
 /// Longest name, token or topic [bytes].
 inline constexpr std::size_t kMaxNameBytes = 256;
@@ -34,6 +34,10 @@ inline constexpr std::size_t kMaxCatalogueEntries = 1024;
 inline constexpr std::size_t kMaxModels = 65535;
 /// Longest build id [digits].
 inline constexpr std::size_t kMaxBuildIdBytes = 64;
+/// Most parts of a build, and the most bytes of their names and values. The frame of a Hello has
+/// room for both.
+inline constexpr std::size_t kMaxBuildParts = 256;
+inline constexpr std::size_t kMaxBuildBytes = 20u << 10;
 /// Most stages of a message.
 inline constexpr std::size_t kMaxStages = 256;
 /// Every timestamp t has 0 ≤ t < this (146 years), so that sums of two cannot overflow [ns].

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,14 @@ inline constexpr const char* kClearLine = "\r\x1b[K";
 /// The columns of the terminal behind a descriptor, at this moment; 0 if it is none. 80 if the
 /// terminal does not say.
 int terminal_columns(int descriptor);
+
+/// The columns for texts of several lines: COLUMNS in the environment if it is a number from 20,
+/// else those of the terminal behind the descriptor, else 100.
+std::size_t text_columns(int descriptor);
+
+/// Whether a text there may have colours: it is a terminal, and neither NO_COLOR nor TERM=dumb is
+/// in the environment (https://no-color.org).
+bool shows_colours(int descriptor);
 
 /// The begin of a UTF-8 text that fits in `columns` - 1 columns (in the last one, terminals
 /// differ); "…" is the end of what was cut. Wide and combining characters count as they are shown.

@@ -33,10 +33,12 @@ std::string read_whole(const std::filesystem::path& file);
 /// The last line that is not blank, without blanks at its ends; empty if there is none.
 std::string last_line(const std::string& text);
 
-/// A 64-bit FNV-1a digest of the content as 16 hexadecimal digits. It distinguishes versions; it is
-/// not cryptographic. Thread-safe. The file is read again only after it changed: the digest is
-/// remembered while the file's number, size and times of change stay the same, once these times are
-/// older than the coarsest clock of a file system.
+/// A 64-bit FNV-1a digest as 16 hexadecimal digits. It distinguishes versions; it is not
+/// cryptographic. Thread-safe.
+std::string digest_of(std::string_view text);
+/// The digest of the content. Thread-safe. The file is read again only after it changed: the digest
+/// is remembered while the file's number, size and times of change stay the same, once these times
+/// are older than the coarsest clock of a file system.
 /// @throws Error(kBadFile) as `read_file`.
 std::string digest_of_file(const std::filesystem::path& file);
 

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include <tether/base/text_table.h>
+
 /// Tables for people and programs.
 namespace tether::report {
 
@@ -21,8 +23,9 @@ struct Table {
   std::size_t text_columns = 1;  ///< number of leading columns with text; the others have numbers
 };
 
-/// Columns aligned for a terminal: text to the left, numbers to the right. Supports UTF-8.
-std::string to_text(const Table& table);
+/// Columns aligned for a terminal: text to the left, numbers to the right. Supports UTF-8. A table
+/// that is wider than `columns` becomes a list with a block for each row.
+std::string to_text(const Table& table, std::size_t columns = kAnyColumns);
 /// GitHub's Markdown. The rows of headings are joined into one.
 std::string to_markdown(const Table& table);
 /// RFC 4180, without title and notes. The rows of headings are joined into one.

@@ -207,7 +207,7 @@ std::vector<std::vector<Verdict>> by_scenario(std::vector<Verdict> verdicts);
 /// Empty for one scenario.
 std::vector<Answer> headlines_of(const std::vector<std::vector<Verdict>>& groups);
 
-enum class Markup { kPlain, kMarkdown };
+enum class Markup { kPlain, kMarkdown, kTerminal };  ///< of a terminal: plain, with colours
 /// Answers and advice as lines, with a line that is empty at the end.
 std::string answer_text(const std::vector<Answer>& answers, const std::vector<std::string>& advice,
                         Markup markup);

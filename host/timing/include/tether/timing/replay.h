@@ -57,8 +57,9 @@ class Replay {
                                   const std::vector<link::StageTime>& stages);
   /// Whether the timing has that stage.
   bool knows(const std::string& stage) const { return sources_.contains(stage); }
-  /// The build id that the program must have; none: any.
-  const std::optional<std::string>& required_build_id() const { return required_build_id_; }
+  /// What differs between this program and the one that was recorded; none: it can be given this
+  /// time.
+  std::optional<std::string> other_build(const std::string& build_id, const Build& build) const;
 
  private:
   /// Times of a stage to draw from.
@@ -75,8 +76,8 @@ class Replay {
   UnknownStages unknown_;
   std::string uav_;
   std::uint64_t seed_;
-  std::optional<std::string> required_build_id_;
-  std::vector<Call> calls_;  // kExact: those that are expected
+  std::optional<Build> required_;  // kExact: the build, its build id first
+  std::vector<Call> calls_;        // kExact: those that are expected
   std::size_t next_ = 0;
   std::map<std::string, Source> sources_;  // of the timing
   std::map<std::string, Source> counted_;  // of stages that it does not have

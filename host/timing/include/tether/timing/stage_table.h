@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include <tether/base/text_table.h>
 #include <tether/timing/timing.h>
 
 namespace tether::timing {
@@ -27,7 +28,7 @@ std::vector<std::string> warnings(const std::vector<StageRow>& rows);
 
 /// A time in milliseconds, for tables: "12.345".
 std::string in_ms(double seconds);
-/// For a person, in milliseconds.
-std::string to_text(const std::vector<StageRow>& rows);
+/// For a person, in milliseconds; a list if the table is wider than `columns`.
+std::string to_text(const std::vector<StageRow>& rows, std::size_t columns = kAnyColumns);
 
 }  // namespace tether::timing

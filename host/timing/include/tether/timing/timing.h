@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,11 +29,16 @@ struct Run {
   friend bool operator==(const Run&, const Run&) = default;
 };
 
+using Build = std::vector<link::BuildPart>;
+
 /// Runs of one program in one scenario on one machine.
 struct Timing {
   std::string scenario;
+  std::string condition{};  ///< empty: several, or a file of schema 1
   std::string program;      ///< name and version
   std::string build_id;     ///< empty: it has none
+  /// By UAV, of its program. Empty in files of schema 1, which cannot be replayed exactly.
+  std::map<std::string, Build> builds{};
   std::string board;        ///< the target's name
   std::string clock;        ///< as in TETHER_CLOCK
   std::string recorded_at;  ///< when the newest run was recorded: UTC as in ISO 8601
@@ -51,6 +57,10 @@ Timing of_record(const record::Record& record, const std::filesystem::path& file
 
 /// The calls of one SUT of a record, however its time was measured.
 Run run_of(const record::Record& record, const record::SutInfo& sut);
+
+/// What differs between two builds, for people: "argument 4 was "30", is "60"". None if nothing
+/// does.
+std::optional<std::string> difference(const Build& was, const Build& is);
 
 /// How many flights these are, for people: "2 runs", "1 run of 2 UAVs".
 std::string runs_text(const Timing& timing);
@@ -74,6 +84,10 @@ bool is_timing_file(const std::filesystem::path& file);
 Timing read_timing(const std::filesystem::path& file);
 /// Completely or not at all. @throws Error(kSetup) with the file.
 void write_timing(const std::filesystem::path& file, const Timing& timing);
+
+/// Whether the program did not name the stage: what it computed outside of its own stages, between
+/// two calls (link::stage_between).
+bool is_between_calls(const Timing& timing, const std::string& stage);
 
 /// The times of each stage in all runs of the UAV [ns], in their order; of every UAV if the name is
 /// empty.

@@ -1,0 +1,60 @@
+#include "shared/help.h"
+
+#include "shared/value.h"
+
+#include <algorithm>
+#include <string>
+
+#include <tether/base/text_table.h>
+
+namespace tether::app {
+
+namespace {
+
+class Format : public CLI::Formatter {
+ public:
+  explicit Format(std::size_t columns) : columns_(columns) {}
+
+  std::string make_option(const CLI::Option* option, bool is_positional) const override {
+    const Value value = value_of(*option);
+    std::string name = is_positional ? option->get_name(true) : option->get_name(false, true);
+    const bool takes_value = !is_positional && option->get_items_expected_max() != 0;
+    if (takes_value) name += " " + value.word;
+    if (option->get_expected_max() == CLI::detail::expected_max_vector_size) name += " ...";
+    std::string text = option->get_description();
+    if (!value.range.empty())
+      text += (value.is_whole ? ". A whole number from " : ". A number from ") + value.range;
+    if (const std::string preset = option->get_default_str(); !preset.empty())
+      text += " [" + preset + "]";
+    return entry(name, text);
+  }
+  std::string make_subcommand(const CLI::App* command) const override {
+    return entry(command->get_name(), command->get_description());
+  }
+  std::string make_description(const CLI::App* app) const override {
+    return wrapped(app->get_description() + "\n", columns_);
+  }
+  std::string make_footer(const CLI::App* app) const override {
+    return wrapped(app->get_footer() + "\n", columns_);
+  }
+
+ private:
+  /// On a narrow terminal, the text begins on a line of its own.
+  std::string entry(const std::string& name, const std::string& text) const {
+    const std::size_t begin = columns_ < 80 ? 6 : 26;
+    const std::string left = "  " + name;
+    const std::string room(begin, ' ');
+    if (columns_of(left) + 2 > begin) return left + "\n" + wrapped(room + text, columns_) + "\n";
+    return wrapped(left + room.substr(columns_of(left)) + text, columns_) + "\n";
+  }
+
+  std::size_t columns_;
+};
+
+}  // namespace
+
+std::shared_ptr<CLI::FormatterBase> help_format(std::size_t columns) {
+  return std::make_shared<Format>(columns);
+}
+
+}  // namespace tether::app
