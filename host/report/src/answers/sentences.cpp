@@ -82,11 +82,11 @@ std::string missed_goals_text(const ConditionVerdict& condition) {
 
 /// One for each MissReason::Evidence.
 constexpr std::array kMissReasons = {
-    " “{condition}” {other}{cost}.",
-    " Computing an image takes {own}, longer than “{cause}” allows.",
+    " “{condition}” {text}.",
+    " {text}.",
     " No faster condition was flown, so whether speed matters is not known.",
-    " “{condition}” is faster, and {other}: too few flights to show whether speed matters.",
-    " The reason: {cause}.",
+    " “{condition}” is faster and {text}. That does not show whether speed matters.",
+    " The reason: {text}.",
     " Computing takes no time there, so a faster computer does not help.",
     " “{condition}” misses it too, although computing takes no time there.",
     " “{condition}” is faster and reads every image, and misses it too.",
@@ -94,14 +94,8 @@ constexpr std::array kMissReasons = {
 };
 
 std::string reason_text(const MissReason& reason) {
-  std::string cost;
-  if (reason.other_s > 0.0)
-    cost = fmt::format(": an image costs {} instead of {}, {} × less", short_ms(reason.other_s),
-                       short_ms(reason.own_s), fixed(reason.own_s / reason.other_s, 1));
   return fmt::format(fmt::runtime(kMissReasons[static_cast<std::size_t>(reason.evidence)]),
-                     fmt::arg("condition", reason.condition), fmt::arg("other", reason.other),
-                     fmt::arg("cost", cost), fmt::arg("own", short_ms(reason.own_s)),
-                     fmt::arg("cause", reason.cause));
+                     fmt::arg("condition", reason.condition), fmt::arg("text", reason.text));
 }
 
 /// One for each campaign::Doubt::Kind: of a UAV or a machine.
@@ -109,7 +103,7 @@ constexpr std::array kDoubts = {
     "the program of {subject} waited {amount:.2g} s on something that Tether does not see",
     "threads of the program of {subject} computed in parallel ({amount:.1f} × the wall time), but "
     "their times are added",
-    "{subject} was busy or uneven: the times vary by up to {percent:.0f} %",
+    "the machine{subject} was busy or uneven: its times can be off by up to {percent:.0f} %",
 };
 
 std::string doubt_text(const FlightsInDoubt& doubt, const ConditionVerdict& condition) {
@@ -118,9 +112,12 @@ std::string doubt_text(const FlightsInDoubt& doubt, const ConditionVerdict& cond
       condition.flown > 1
           ? fmt::format(", at most, in {} of {}", doubt.flights, flights_text(condition.flown))
           : "";
+  const bool is_of_uav = largest.kind != campaign::Doubt::Kind::kBusyMachine;
+  const std::string subject = is_of_uav || largest.subject.empty()
+                                  ? largest.subject
+                                  : fmt::format(" “{}”", largest.subject);
   return fmt::format(fmt::runtime(kDoubts[static_cast<std::size_t>(largest.kind)]),
-                     fmt::arg("subject", largest.subject.empty() ? "the machine" : largest.subject),
-                     fmt::arg("amount", largest.amount),
+                     fmt::arg("subject", subject), fmt::arg("amount", largest.amount),
                      fmt::arg("percent", 100.0 * largest.amount)) +
          where;
 }
