@@ -164,10 +164,11 @@ std::string doubts_text(const ConditionVerdict& condition) {
 
 std::string undecided_text(const ConditionVerdict& condition) {
   const FlightsInDoubt* busy = condition.doubt(campaign::Doubt::Kind::kBusyMachine);
-  if (busy != nullptr && condition.closest)
+  if (busy != nullptr && condition.tightest &&
+      std::abs(condition.tightest->second) < busy->largest.amount)
     return fmt::format(" The closest limit ({}, {}) is within the spread of the times.",
-                       in_a_sentence(condition.closest->first),
-                       distance_text(condition.closest->second));
+                       in_a_sentence(condition.tightest->first),
+                       distance_text(condition.tightest->second));
   if (condition.share->low >= kWantedSuccess || condition.share->high < kWantedSuccess) return "";
   return fmt::format(" So few flights show neither that {} reach it nor that fewer do.", kWanted);
 }

@@ -98,6 +98,9 @@ struct ConditionVerdict {
   /// The metric or clause that came closest to its limit in any flight, and how far it was within
   /// it, in shares of the limit.
   std::optional<std::pair<std::string, double>> closest{};
+  /// Of the worst ones of each flight, that which is nearest to its limit, on either side: a small
+  /// change can change that flight's outcome.
+  std::optional<std::pair<std::string, double>> tightest{};
   std::string reason{};                  ///< of the first flight that failed, or is not sound
   std::vector<FlightsInDoubt> doubts{};  ///< one of each kind, in the order of the kinds
   /// What of the files is not simulated as written and can change the verdict, one line each.
