@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include <tether/base/counted.h>
 #include <tether/base/text_table.h>
 #include <tether/campaign/copies.h>
 #include <tether/campaign/statistics.h>
@@ -183,7 +184,7 @@ std::string comparison_text(const Compared& other, const Compared& missed) {
   const Costs costs = *costs_of(*missed.pace(), *other.pace());
   return (is_sufficient(verdict.ruling) ? fmt::format("is {}", name(verdict.ruling))
                                         : fmt::format("reaches it in {} of {}", verdict.reached,
-                                                      flights_text(verdict.flown))) +
+                                                      counted(verdict.flown, "flight"))) +
          fmt::format(
              ": {} {} instead of {}{}", costs.what, short_ms(costs.other_s), short_ms(costs.own_s),
              costs.other_s > 0.0 ? fmt::format(", {} × less", fixed(costs.own_s / costs.other_s, 1))
