@@ -30,7 +30,9 @@ TEST(Copies, AreCountedOnce) {
   TrialResult flight;
   flight.flight_digest = "0123456789abcdef";
   flight.outcome = Outcome::kGoalReached;
-  flight.metrics = {{.name = "m", .value = 2.0}};
+  MetricValue& metric = flight.metrics.emplace_back();
+  metric.name = "m";
+  metric.value = 2.0;
   ConditionResults results{"c", {flight, flight, flight, flight, flight}, 5};
   results.trials[1].seed = 2;
   results.trials[1].this_run.wall = Duration(1);

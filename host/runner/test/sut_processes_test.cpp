@@ -83,7 +83,8 @@ TEST_F(Suts, ReportSignals) {
 TEST_F(Suts, NoteAnExitCodeThatContradictsTheReportedGoal) {
   start({"exit 1", "exit 1", "exit 0"});
   const auto report = [](const char* uav, bool reached) {
-    coordinator::SutReport one{.uav = uav};
+    coordinator::SutReport one;
+    one.uav = uav;
     one.finish.emplace().reached_goal = reached;
     return one;
   };

@@ -48,7 +48,7 @@ std::string pace_text(const Pace& pace) {
 }
 
 /// "5 of 10 flights", "one flight, flown 10 times", "10 of 10 flights (3 different ones)"
-std::string counted(std::size_t count, const ConditionVerdict& condition) {
+std::string count_text(std::size_t count, const ConditionVerdict& condition) {
   if (condition.flown > 1 && condition.is_one_flight())
     return fmt::format("one flight, flown {} times,", condition.flown);
   const std::string text = fmt::format("{} of {}", count, counted(condition.flown, "flight"));
@@ -67,7 +67,7 @@ std::string goals_text(const ConditionVerdict& condition) {
     return fmt::format("on “{}” the flight reaches the goal within the limits",
                        condition.condition);
   return fmt::format("on “{}” {} {} the goal within the limits", condition.condition,
-                     counted(condition.reached, condition),
+                     count_text(condition.reached, condition),
                      verb(condition, condition.reached, "reaches", "reach"));
 }
 
@@ -76,18 +76,18 @@ std::string missed_goals_text(const ConditionVerdict& condition) {
   if (condition.planned == 1)
     return fmt::format("{}, on “{}”", missed.empty() ? "the goal" : missed, condition.condition);
   const std::size_t count = condition.flown - condition.reached;
-  return fmt::format("on “{}” {} {} the goal{}", condition.condition, counted(count, condition),
+  return fmt::format("on “{}” {} {} the goal{}", condition.condition, count_text(count, condition),
                      verb(condition, count, "misses", "miss"),
                      missed.empty() ? "" : " (missed: " + missed + ")");
 }
 
 /// One for each MissReason::Evidence.
 constexpr std::array kMissReasons = {
-    " “{condition}” {other}{cost}.",
-    " Computing an image takes {own}, longer than “{cause}” allows.",
+    " “{condition}” {text}.",
+    " {text}.",
     " No faster condition was flown, so whether speed matters is not known.",
-    " “{condition}” is faster, and {other}: too few flights to show whether speed matters.",
-    " The reason: {cause}.",
+    " “{condition}” is faster and {text}. That does not show whether speed matters.",
+    " The reason: {text}.",
     " Computing takes no time there, so a faster computer does not help.",
     " “{condition}” misses it too, although computing takes no time there.",
     " “{condition}” is faster and reads every image, and misses it too.",
@@ -95,14 +95,8 @@ constexpr std::array kMissReasons = {
 };
 
 std::string reason_text(const MissReason& reason) {
-  std::string cost;
-  if (reason.other_s > 0.0)
-    cost = fmt::format(": an image costs {} instead of {}, {} × less", short_ms(reason.other_s),
-                       short_ms(reason.own_s), fixed(reason.own_s / reason.other_s, 1));
   return fmt::format(fmt::runtime(kMissReasons[static_cast<std::size_t>(reason.evidence)]),
-                     fmt::arg("condition", reason.condition), fmt::arg("other", reason.other),
-                     fmt::arg("cost", cost), fmt::arg("own", short_ms(reason.own_s)),
-                     fmt::arg("cause", reason.cause));
+                     fmt::arg("condition", reason.condition), fmt::arg("text", reason.text));
 }
 
 /// One for each campaign::Doubt::Kind: of a UAV or a machine.
@@ -110,7 +104,7 @@ constexpr std::array kDoubts = {
     "the program of {subject} waited {amount:.2g} s on something that Tether does not see",
     "threads of the program of {subject} computed in parallel ({amount:.1f} × the wall time), but "
     "their times are added",
-    "{subject} was busy or uneven: the times vary by up to {percent:.0f} %",
+    "the machine{subject} was busy or uneven: its times can be off by up to {percent:.0f} %",
 };
 
 std::string doubt_text(const FlightsInDoubt& doubt, const ConditionVerdict& condition) {
@@ -119,9 +113,12 @@ std::string doubt_text(const FlightsInDoubt& doubt, const ConditionVerdict& cond
       condition.flown > 1
           ? fmt::format(", at most, in {} of {}", doubt.flights, counted(condition.flown, "flight"))
           : "";
+  const bool is_of_uav = largest.kind != campaign::Doubt::Kind::kBusyMachine;
+  const std::string subject = is_of_uav || largest.subject.empty()
+                                  ? largest.subject
+                                  : fmt::format(" “{}”", largest.subject);
   return fmt::format(fmt::runtime(kDoubts[static_cast<std::size_t>(largest.kind)]),
-                     fmt::arg("subject", largest.subject.empty() ? "the machine" : largest.subject),
-                     fmt::arg("amount", largest.amount),
+                     fmt::arg("subject", subject), fmt::arg("amount", largest.amount),
                      fmt::arg("percent", 100.0 * largest.amount)) +
          where;
 }
@@ -169,10 +166,11 @@ std::string doubts_text(const ConditionVerdict& condition) {
 
 std::string undecided_text(const ConditionVerdict& condition) {
   const FlightsInDoubt* busy = condition.doubt(campaign::Doubt::Kind::kBusyMachine);
-  if (busy != nullptr && condition.closest)
+  if (busy != nullptr && condition.tightest &&
+      std::abs(condition.tightest->second) < busy->largest.amount)
     return fmt::format(" The closest limit ({}, {}) is within the spread of the times.",
-                       in_a_sentence(condition.closest->first),
-                       distance_text(condition.closest->second));
+                       in_a_sentence(condition.tightest->first),
+                       distance_text(condition.tightest->second));
   if (condition.share->low >= kWantedSuccess || condition.share->high < kWantedSuccess) return "";
   return fmt::format(" So few flights show neither that {} reach it nor that fewer do.", kWanted);
 }
@@ -214,7 +212,7 @@ std::string evidence_of(const ConditionVerdict& condition) {
       return goals_text(condition) + with_pace;
     case Ruling::kNothingToDecide:
       return fmt::format("on “{}” {} {} well, but the scenario sets no limit on them.",
-                         condition.condition, counted(condition.reached, condition),
+                         condition.condition, count_text(condition.reached, condition),
                          verb(condition, condition.flown, "ends", "end"));
     case Ruling::kFreeRunning:
       return fmt::format(

@@ -145,14 +145,14 @@ std::vector<Answer> size_answers(const SizeReport& report) {
                          ? fmt::format("no more than {} were allowed",
                                        counted(report.most_flights, "flight"))
                          : "slowdowns in between could not be decided")});
-  if (copies > 0)
-    answers.push_back({"Not counted", fmt::format(": {} more, each a copy of one at the same "
-                                                  "slowdown, because its seed changes nothing.",
-                                                  counted(copies, "flight"))});
   std::vector<const campaign::TrialResult*> trials;
   for (const campaign::TrialResult& trial : report.synchronised.trials) trials.push_back(&trial);
   std::ranges::move(answers_on_flights(trials, report.pace.unreadable),
                     std::back_inserter(answers));
+  if (copies > 0)
+    answers.push_back({"Not counted", fmt::format(": {} more, each a copy of one at the same "
+                                                  "slowdown, because its seed changes nothing.",
+                                                  counted(copies, "flight"))});
   return answers;
 }
 

@@ -90,21 +90,25 @@ void count(ConditionVerdict& verdict, const campaign::TrialResult& trial) {
   if (trial.outcome == campaign::Outcome::kGoalReached) ++verdict.reached;
   if (has_crash(trial)) ++verdict.crashed;
   if (trial.this_run.target && trial.this_run.target->is_spoiled) ++verdict.throttled;
+  std::optional<std::pair<std::string, double>> worst;
   const auto compare = [&](const std::string& label, std::optional<double> margin) {
-    if (margin && (!verdict.closest || *margin < verdict.closest->second))
-      verdict.closest = {label, *margin};
+    if (margin && (!worst || *margin < worst->second)) worst = {label, *margin};
   };
   for (const campaign::MetricValue& metric : trial.metrics)
     compare(metric.label, margin_of(metric));
   for (const judge::ClauseVerdict& clause : trial.clauses)
     compare(fmt::format("“{}”", clause.name), margin_of(clause));
+  if (!worst) return;
+  if (!verdict.closest || worst->second < verdict.closest->second) verdict.closest = worst;
+  if (!verdict.tightest || std::abs(worst->second) < std::abs(verdict.tightest->second))
+    verdict.tightest = worst;
 }
 
-/// Whether a busy machine could have moved a flight over its closest limit.
+/// Whether a busy machine could have moved a flight over its limits.
 bool is_within_spread(const ConditionVerdict& verdict) {
   const FlightsInDoubt* busy = verdict.doubt(campaign::Doubt::Kind::kBusyMachine);
-  return busy != nullptr && verdict.closest &&
-         std::abs(verdict.closest->second) < busy->largest.amount;
+  return busy != nullptr && verdict.tightest &&
+         std::abs(verdict.tightest->second) < busy->largest.amount;
 }
 
 Ruling ruling_of(const ConditionVerdict& verdict, const campaign::ConditionResults& results) {

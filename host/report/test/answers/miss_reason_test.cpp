@@ -96,9 +96,13 @@ TEST_F(MissReasons, AreSpeedIfAFasterConditionReachesTheGoal) {
   trials(host)[0].versions["simulator"] = "Gazebo";
   expect_unknown("another simulator");
   trials(host)[0].versions["simulator"] = "MuJoCo";
-  paces_[host]->has_radio = paces_[board]->has_radio = true;
-  expect_unknown("a radio, which may be another one");
-  paces_[host]->has_radio = paces_[board]->has_radio = false;
+  paces_[host]->radio.model = paces_[board]->radio.model = "log_distance";
+  expect_unknown("a radio of which not all is known");
+  paces_[host]->radio.inbox_messages = paces_[board]->radio.inbox_messages = 256;
+  EXPECT_EQ(ruling(board), Ruling::kNotFastEnough);
+  paces_[host]->radio.exponent = 3.0;
+  expect_unknown("another radio");
+  paces_[host]->radio = paces_[board]->radio = {};
   paces_[host]->median_s = 0.3;
   expect_unknown("not faster");
 }
@@ -185,7 +189,7 @@ TEST_F(MissReasons, AreNotTheTaskThatDidNotRunIfOneBeforeItWasLate) {
                    {.uav = "uav1", .name = "soon", .margin = -1.0, .deadline = SimTime{}}};
   EXPECT_EQ(ruling(0), Ruling::kGoalMissed);
   trial.clauses.pop_back();
-  trial.tasks = {{.uav = "uav1", .task = "search", .status = "not_reached"}};
+  trial.tasks = {{"uav1", "search", {}, {}, "not_reached", ""}};
   EXPECT_EQ(ruling(0), Ruling::kGoalMissed);
 }
 

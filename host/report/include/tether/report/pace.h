@@ -82,7 +82,7 @@ struct Pace {
   std::vector<BoardPace> boards{};
 
   Speed speed{};  ///< of all programs of the run
-  bool has_radio = false;
+  record::RadioInfo radio{};
   std::size_t messages = 0;  ///< of all programs, once for each receiver
   std::size_t messages_arrived = 0;
 

@@ -54,23 +54,20 @@ struct MissReason {
   enum class Evidence {
     // Speed is the reason.
     kFasterReaches,  ///< another condition differs in speed only, is faster, and reaches it
-    kMissesOwnPace,  ///< the program is too slow for its camera, and for a limit on its own pace
+    kMissesOwnPace,  ///< computing alone takes longer than a limit on its pace allows
     // It is not known.
     kNothing,          ///< no faster condition was flown, or the speeds are not known
-    kFasterUndecided,  ///< another condition is faster, but too few of its flights reach it
+    kFasterUndecided,  ///< another condition is faster, but does not show that speed matters
     // Speed is probably not the reason.
-    kKnownCause,          ///< what happened has nothing to do with computing: see `cause`
+    kKnownCause,          ///< what happened has nothing to do with computing: see `text`
     kInstant,             ///< computing takes no time under this condition
     kInstantMissesToo,    ///< … under another one, which misses the goal, too
     kFasterMissesToo,     ///< another one is faster, reads every image, and misses it, too
     kEquallyFastReaches,  ///< another one has the same computers and sensors, and reaches it
   };
   Evidence evidence = Evidence::kNothing;
-  std::string cause{};      ///< a limit, or what happened: part of a sentence
   std::string condition{};  ///< the other one
-  std::string other{};      ///< how many of its flights reach the goal: "10 of 10 flights"
-  double other_s = 0.0;     ///< what an image (or the largest stage) costs there; 0: not known
-  double own_s = 0.0;       ///< … and here
+  std::string text{};       ///< part of a sentence: what happened, or what was compared
 };
 
 /// A doubt of campaign::Doubt in the flights of a condition.
@@ -101,6 +98,9 @@ struct ConditionVerdict {
   /// The metric or clause that came closest to its limit in any flight, and how far it was within
   /// it, in shares of the limit.
   std::optional<std::pair<std::string, double>> closest{};
+  /// Of the worst ones of each flight, that which is nearest to its limit, on either side: a small
+  /// change can change that flight's outcome.
+  std::optional<std::pair<std::string, double>> tightest{};
   std::string reason{};                  ///< of the first flight that failed, or is not sound
   std::vector<FlightsInDoubt> doubts{};  ///< one of each kind, in the order of the kinds
   /// What of the files is not simulated as written and can change the verdict, one line each.
