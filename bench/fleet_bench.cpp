@@ -143,7 +143,7 @@ class TimedSimulator final : public sim::Simulator {
   std::optional<energy::Status> battery(std::size_t uav) const override {
     return inner_->battery(uav);
   }
-  void computed(std::size_t uav, Duration busy) override { inner_->computed(uav, busy); }
+  void computing(std::size_t uav, double cores) override { inner_->computing(uav, cores); }
   std::string description() const override { return inner_->description(); }
 
  private:

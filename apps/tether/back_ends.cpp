@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <tether/base/error.h>
+#include <tether/sim/step_check.h>
 #include <tether/sim_gazebo/gazebo_install.h>
 #include <tether/sim_gazebo/gazebo_simulator.h>
 #include <tether/sim_gazebo/gazebo_world.h>
@@ -74,6 +75,7 @@ std::vector<std::filesystem::path> no_files() {
 
 runner::BackEnd back_end(EmbeddedSimulator) {
   const auto prepare = [](sim::World world, const sim::WarningSink& warn) -> StartSimulator {
+    sim::check_step(world, sim::Controller::kOurs, warn);
     return [make = sim::prepare_mujoco_simulator(std::move(world), warn)](
                const SimulatorSetup& setup) {
       return std::make_unique<WithoutProcesses>(make(setup.warn, setup.threads_ahead));
@@ -83,7 +85,9 @@ runner::BackEnd back_end(EmbeddedSimulator) {
 }
 
 runner::BackEnd back_end(const sim::protocol::Endpoint& endpoint) {
-  const auto prepare = [endpoint](sim::World world, const sim::WarningSink&) -> StartSimulator {
+  const auto prepare = [endpoint](sim::World world,
+                                  const sim::WarningSink& warn) -> StartSimulator {
+    sim::check_step(world, sim::Controller::kUnknown, warn);
     sim::require_remote_cameras(world);
     return [endpoint, world = std::move(world)](const SimulatorSetup& setup) {
       return std::make_unique<WithoutProcesses>(attach(endpoint, world, setup));
@@ -93,7 +97,8 @@ runner::BackEnd back_end(const sim::protocol::Endpoint& endpoint) {
 }
 
 runner::BackEnd back_end(GazeboSimulator) {
-  const auto prepare = [](sim::World world, const sim::WarningSink&) -> StartSimulator {
+  const auto prepare = [](sim::World world, const sim::WarningSink& warn) -> StartSimulator {
+    sim::check_step(world, sim::Controller::kOurs, warn);
     sim::check_sdf_version(world, {.name = "Gazebo 11"});
     sim::check_gazebo_world(world);
     sim::require_remote_cameras(world);

@@ -19,7 +19,7 @@ void require_whole(const scenario::Condition& condition) {
 /// What scenario.h promises.
 void require_whole(const scenario::Scenario& scenario) {
   require(!scenario.name.empty() && scenario.file.is_absolute(), "a scenario without a name");
-  require(scenario.time_limit > Duration(0) && scenario.step > Duration(0), "a bad limit");
+  require(scenario.time_limit > Duration(0) && scenario.step != Duration(0), "a bad limit");
   require(!scenario.uavs.empty() && !scenario.conditions.empty(), "a scenario of nothing");
   std::set<std::string> names;
   for (const scenario::UavSetup& uav : scenario.uavs) {

@@ -2,7 +2,6 @@
 #include "terminal/print.h"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <string>
 
@@ -18,15 +17,13 @@ using scenario::ShippedFile;
 using scenario::ShippedFiles;
 using scenario::ShippedKind;
 
-constexpr std::array kKinds = {ShippedKind::kScenario, ShippedKind::kCampaign, ShippedKind::kWorld,
-                               ShippedKind::kProfile, ShippedKind::kTarget};
-
 }  // namespace
 
 int list_shipped(const ListOptions&, const std::stop_token&) {
   const auto shipped = ShippedFiles::of_program(os::own_file());
   const char* gap = "";
-  for (const ShippedKind kind : kKinds) {
+  for (int i = 0; i < scenario::kShippedKinds; ++i) {
+    const auto kind = static_cast<ShippedKind>(i);
     const auto files = shipped.list(kind);
     std::size_t width = 0;
     for (const ShippedFile& file : files) width = std::max(width, file.name.size());
@@ -38,7 +35,10 @@ int list_shipped(const ListOptions&, const std::stop_token&) {
     }
     gap = "\n";
   }
-  print(fmt::format("\nThe files are in {}. Copy one to change it.\n", shipped.folder().string()));
+  print(fmt::format(
+      "\nThe files are in {}. Scenarios and campaigns can name them as listed here: world = "
+      "\"room\". Copy a file to change it, and give the copy another name.\n",
+      shipped.folder().string()));
   return 0;
 }
 

@@ -16,11 +16,13 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <tether/base/error.h>
 #include <tether/campaign/campaign_plan.h>
 #include <tether/campaign/result.h>
 #include <tether/os/program.h>
+#include <tether/os/terminal.h>
 #include <tether/os/text_file.h>
 #include <tether/report/junit.h>
 #include <tether/report/page.h>
@@ -157,7 +159,11 @@ int run_and_print(const RunOptions& options, const std::stop_token& stop) {
     fmt::print("{}\n", campaign::to_json(result));
   else if (!options.quiet)
     print(report::run_text(result, spec.folder, markup_of_stdout()));
-  if (result.outcome == campaign::Outcome::kFailed) complain("tether: " + result.reason);
+  // A person has read the reason on the same terminal.
+  const bool is_read = !options.json && !options.quiet && os::terminal_columns(STDOUT_FILENO) > 0 &&
+                       os::terminal_columns(STDERR_FILENO) > 0;
+  if (result.outcome == campaign::Outcome::kFailed && !is_read)
+    complain("tether: " + result.reason);
   return campaign::exit_code(result.outcome);
 }
 

@@ -127,7 +127,7 @@ int code_of(const report::SizeReport& report) {
       report.boards.empty()
           ? answer.is_narrow
           : std::ranges::all_of(report.boards, [&](const report::Board& board) {
-              return report::verdict(board, answer) == report::BoardVerdict::kSuffices;
+              return report::verdict(board, report.synchronised) == report::BoardVerdict::kSuffices;
             });
   return is_answered ? 0 : 1;
 }

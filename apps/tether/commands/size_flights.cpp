@@ -80,13 +80,18 @@ SizeTrials::Questions SizeFlights::questions(sizing::Sizing& sizing,
     std::vector<SizeTrials::Wanted> wanted;
     into.answer = sizing.answer(most == 0);
     if (into.answer.is_narrow || most == 0) return wanted;
+    if (into.copies >= report::kMostCopies) {
+      into.answer = sizing.answer(true);
+      return wanted;
+    }
     for (const double slowdown : sizing.next(most)) wanted.push_back(slowed(0, slowdown));
     return wanted;
   };
   const auto take = [&](const campaign::TrialPlan& plan, const campaign::TrialResult& trial) {
-    into.flights.push_back(report::flight_of(trial, plan.condition->slowdown));
-    into.trials.push_back(trial);
-    sizing.add(into.flights.back());
+    if (report::add_flight(into, trial, plan.condition->slowdown))
+      sizing.skip_copy();
+    else
+      sizing.add(into.flights.back());
   };
   return {next, take, [&] { return known_text(into.answer.threshold); }};
 }

@@ -17,6 +17,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <tether/base/counted.h>
 #include <tether/base/error.h>
 #include <tether/os/program.h>
 #include <tether/os/terminal.h>
@@ -190,8 +191,9 @@ void SizeTrials::take(const campaign::TrialPlan& plan, const Questions& question
 void SizeTrials::show(const campaign::CampaignProgress& progress, const Questions& questions) {
   if (os::terminal_columns(STDERR_FILENO) > 0) {
     if (progress.latest == nullptr) return;
-    line_.show(fmt::format("{} flights, at most {}; {}; flying {}", flown_ + progress.done,
-                           options_.max_trials, questions.so_far(), text_of(*progress.latest)));
+    line_.show(fmt::format("{}, at most {}; {}; flying {}",
+                           counted(flown_ + progress.done, "flight"), options_.max_trials,
+                           questions.so_far(), text_of(*progress.latest)));
   } else if (progress.result != nullptr) {
     say("{}  {}: {}; {}\n", flown_ + progress.done, text_of(*progress.latest),
         campaign::name(progress.result->outcome), questions.so_far());
@@ -209,10 +211,10 @@ int SizeTrials::say_why(End end) const {
         "the program, but {}. Correct that, or remove the limit.\n",
         flown_, why_without_value_);
   else if (end == End::kInterrupted)
-    say("tether: interrupted after {} flights; to continue, type: {}\n", flown_, again);
+    say("tether: interrupted after {}; to continue, type: {}\n", counted(flown_, "flight"), again);
   else
-    say("tether: {} flights failed without a result. Fix the cause; to continue, type: {}\n",
-        not_flown_.size(), again);
+    say("tether: {} failed without a result. Fix the cause; to continue, type: {}\n",
+        counted(not_flown_.size(), "flight"), again);
   return exit_code(ErrorCode::kSetup);
 }
 

@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include <tether/report/size_report.h>
 #include <tether/report/uavs_report.h>
 #include <tether/scenario/campaign.h>
 
@@ -92,7 +93,8 @@ SizeTrials::Questions questions(report::UavsReport& report, const scenario::Camp
   const auto next = [&](std::size_t most) {
     report.answer = sizing::answer_by_uavs(report.question, report::uav_levels(report.points));
     std::vector<SizeTrials::Wanted> wanted;
-    if (report.answer.is_decided()) return wanted;
+    if (report.answer.is_decided() || report::copies_in(report) >= report::kMostCopies)
+      return wanted;
     for (std::size_t i = 0; i < most; ++i) {
       const std::size_t uavs = report.answer.next[i % report.answer.next.size()];
       const auto& entry = campaign.scenarios[uavs - report.question.least];

@@ -25,12 +25,14 @@ int check_world(const WorldCheckOptions& options, const std::stop_token&) {
                       collect);
   const std::string file = world.file.string();
   const auto models = world.models.size(), lights = world.lights.size();
+  const std::string step =
+      fmt::format("step {} ms{}", 1e3 * to_seconds(world.step), sim::set_at(world));
   find_back_end("mujoco").prepare(std::move(world), collect);
-  print(fmt::format("{}: can be used ({} models, {} lights); {}\n{}", file, models, lights,
-                    warnings.empty()
-                        ? "everything is simulated as written"
-                        : fmt::format("{} things are not simulated as written", warnings.size()),
-                    grouped(warnings, std::numeric_limits<std::size_t>::max())));
+  print(fmt::format(
+      "{}: can be used ({} models, {} lights, {}); {}\n{}", file, models, lights, step,
+      warnings.empty() ? "everything is simulated as written"
+                       : fmt::format("{} things are not simulated as written", warnings.size()),
+      grouped(warnings, std::numeric_limits<std::size_t>::max())));
   return 0;
 }
 

@@ -144,10 +144,11 @@ std::shared_ptr<RunOptions> add_run_command(CLI::App& program, Action& action) {
                       "instead of the condition's unknown_stages: refused (the run ends), counted "
                       "or zero");
   command
-      ->add_option("--set", options->settings,
-                   "Replace a value of the scenario, given by its key's path: time_limit_s=30, "
-                   "cpu_factor=4 (of each [[condition]] that has it), "
-                   "sut.parameters.yaw_rate_deg_s=40, uavs=2 (the first two); can be repeated")
+      ->add_option(
+          "--set", options->settings,
+          "Set a value of the scenario, given by its key's path: time_limit_s=30, "
+          "cpu_factor=4 (of each [[condition]] that has it), \"uav.position_m=[1, 0, 1]\", "
+          "sut.parameters.yaw_rate_deg_s=40, uavs=2 (the first two); can be repeated")
       ->type_name("KEY=VALUE")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <charconv>
 #include <iomanip>
 #include <locale>
 #include <sstream>
@@ -124,6 +125,18 @@ std::string fixed(double value, int digits) {
   text.imbue(std::locale::classic());
   text << std::fixed << std::setprecision(digits) << value;
   return text.str();
+}
+
+std::string distinct_text(double value, double other, int digits) {
+  constexpr int kAll = 17;
+  const auto text = [&](double number) {
+    char buffer[40];
+    const auto [end, error] =
+        std::to_chars(buffer, buffer + sizeof buffer, number, std::chars_format::general, digits);
+    return std::string(buffer, end);
+  };
+  while (value != other && digits < kAll && text(value) == text(other)) ++digits;
+  return text(value);
 }
 
 }  // namespace tether

@@ -47,5 +47,13 @@ TEST(Fixed, HasSoManyDigits) {
   EXPECT_EQ(fixed(2.0, 0), "2");
 }
 
+TEST(DistinctText, HasTheDigitsInWhichTwoNumbersDiffer) {
+  EXPECT_EQ(distinct_text(5.000000001, 5.0, 4), "5.000000001");
+  EXPECT_EQ(distinct_text(5.0, 5.000000001, 4), "5");
+  EXPECT_EQ(distinct_text(5.25, 5.0, 2), "5.2");
+  EXPECT_EQ(distinct_text(7.0, 7.0, 4), "7");
+  EXPECT_EQ(distinct_text(0.1 + 0.2, 0.3, 4), "0.30000000000000004");
+}
+
 }  // namespace
 }  // namespace tether

@@ -111,6 +111,7 @@ Result<Message> read(const wire::Welcome& welcome) {
   out.start = from_ns<ExecTime>(welcome.start_et_ns());
   out.computing = read(welcome.computing());
   out.peers = texts_of(welcome.peers());
+  out.real_time_factor = welcome.real_time_factor();
   return Message(std::move(out));
 }
 
@@ -195,7 +196,7 @@ Result<Message> read(const wire::Hello& hello) {
   return Message(Hello{hello.protocol_version(), hello.sut()->str(), hello.uav()->str(),
                        static_cast<ClockKind>(hello.clock()), hello.cpu_factor(),
                        hello.token()->str(), hello.concurrent(), Duration(hello.computing_ns()),
-                       hello.build_id() != nullptr ? hello.build_id()->str() : "",
+                       hello.build_id() != nullptr ? hello.build_id()->str() : "", hello.process(),
                        std::move(build)});
 }
 Result<Message> read(const wire::Refusal& refusal) {

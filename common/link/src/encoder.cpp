@@ -186,19 +186,21 @@ Content write(FlatBufferBuilder& b, const Hello& hello, ImageSlot&) {
     parts.push_back(wire::CreateBuildPart(b, name, b.CreateString(part.value)));
   }
   const auto build = parts.empty() ? 0 : b.CreateVector(parts);
-  return {wire::Content::Hello,
-          wire::CreateHello(b, hello.protocol_version, sut, uav,
-                            static_cast<wire::ClockKind>(hello.clock), hello.cpu_factor, token,
-                            hello.concurrent, hello.computing.count(), build_id, build)
-              .Union()};
+  return {
+      wire::Content::Hello,
+      wire::CreateHello(b, hello.protocol_version, sut, uav,
+                        static_cast<wire::ClockKind>(hello.clock), hello.cpu_factor, token,
+                        hello.concurrent, hello.computing.count(), build_id, hello.process, build)
+          .Union()};
 }
 Content write(FlatBufferBuilder& b, const Welcome& welcome, ImageSlot&) {
   const auto catalogue = write(b, welcome.catalogue);
   const StageTimes computing = write(b, welcome.computing);
   const auto peers = welcome.peers.empty() ? 0 : b.CreateVectorOfStrings(welcome.peers);
-  return {wire::Content::Welcome, wire::CreateWelcome(b, catalogue, welcome.free_running,
-                                                      to_ns(welcome.start), computing, peers)
-                                      .Union()};
+  return {wire::Content::Welcome,
+          wire::CreateWelcome(b, catalogue, welcome.free_running, to_ns(welcome.start), computing,
+                              peers, welcome.real_time_factor)
+              .Union()};
 }
 Content write(FlatBufferBuilder& b, const Refusal& refusal, ImageSlot&) {
   const auto message = b.CreateString(refusal.message);

@@ -145,6 +145,8 @@ void check(Checker& c, const Welcome& welcome) {
   check(c, welcome.computing, "computing");
   c.require(welcome.peers.size() <= kMaxCatalogueEntries, "peers", "has too many entries");
   for (const std::string& peer : welcome.peers) c.text(peer, kMaxNameBytes, "peers");
+  c.require(welcome.real_time_factor > 0.0 && welcome.real_time_factor <= kMaxRealTimeFactor,
+            "real_time_factor", "is out of range");
 }
 
 void check(Checker& c, const Refusal& refusal) {

@@ -48,20 +48,22 @@ T decoded(const T& message) {
 
 // A field that both encoder and decoder left out would survive the round trip above.
 TEST(Codec, HelloRequestAndReplyFieldByField) {
-  const auto [version, sut, uav, clock, factor, token, concurrent, computing, build_id, build] =
-      decoded(Hello{9,
-                    "sut 1.2",
-                    "uav0",
-                    ClockKind::kCpu,
-                    2.5,
-                    "secret",
-                    true,
-                    Duration(7),
-                    "0a",
-                    {{"argument 1", "3"}, {"library l.so", "0b"}}});
+  const auto [version, sut, uav, clock, factor, token, concurrent, computing, build_id, process,
+              build] = decoded(Hello{9,
+                                     "sut 1.2",
+                                     "uav0",
+                                     ClockKind::kCpu,
+                                     2.5,
+                                     "secret",
+                                     true,
+                                     Duration(7),
+                                     "0a",
+                                     4'000'000'000,
+                                     {{"argument 1", "3"}, {"library l.so", "0b"}}});
   EXPECT_EQ(
-      std::tie(version, sut, uav, clock, factor, token, concurrent, computing, build_id),
-      std::tuple(9u, "sut 1.2", "uav0", ClockKind::kCpu, 2.5, "secret", true, Duration(7), "0a"));
+      std::tie(version, sut, uav, clock, factor, token, concurrent, computing, build_id, process),
+      std::tuple(9u, "sut 1.2", "uav0", ClockKind::kCpu, 2.5, "secret", true, Duration(7), "0a",
+                 4'000'000'000u));
   EXPECT_EQ(build, (std::vector<BuildPart>{{"argument 1", "3"}, {"library l.so", "0b"}}));
 
   const uav::VelocityCommand velocity{{1.0, -2.0, 0.5}, 0.25};
@@ -123,9 +125,11 @@ TEST(Codec, WelcomeFieldByField) {
   welcome.catalogue.anchors = {{"box", uav::AnchorShape::kCylinder, {1, 2, 3}, {0, 0.5, 1}}};
   welcome.free_running = true;
   welcome.start = from_ns<ExecTime>(77);
+  welcome.real_time_factor = 0.3;
 
   const Welcome got = decoded(welcome);
   EXPECT_TRUE(got.free_running);
+  EXPECT_EQ(got.real_time_factor, 0.3);
   EXPECT_EQ(got.start, welcome.start);
   ASSERT_EQ(got.catalogue.sensors.size(), 3u);
   const auto& [name, X_BS, rate_hz, properties] = got.catalogue.sensors[0];

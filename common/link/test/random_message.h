@@ -90,6 +90,7 @@ class RandomMessage {
     out.start = time<ExecTime>();
     out.computing = stages();
     out.peers.assign(random_.bits() % 3, text());
+    out.real_time_factor = 0.01 + random_.uniform();
     if (coin()) out.catalogue.battery_capacity_C = std::abs(number());
     return out;
   }

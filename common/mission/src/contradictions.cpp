@@ -10,14 +10,15 @@ using Kind = Clause::Kind;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// The values of a quantity that a clause allows, in SI units. Of kNever, those beyond the bound.
+/// The values of a quantity that a clause allows, in SI units. Of kNever, those beyond the bound,
+/// without the bound itself.
 struct Allowed {
   double least = -kInfinity;
   double most = kInfinity;
 };
 Allowed allowed(const Clause& clause) {
   const Condition& condition = *clause.condition;
-  const double bound = condition.bound * condition.unit->si;
+  const double bound = condition.unit->to_si(condition.bound);
   const bool is_upper = condition.at_most != (clause.kind == Kind::kNever);
   return is_upper ? Allowed{-kInfinity, bound} : Allowed{bound, kInfinity};
 }
@@ -41,7 +42,10 @@ bool contradict(const Clause& a, const Clause& b) {
   if (a.condition->share < 1.0 || b.condition->share < 1.0) return false;
   const bool meet = (is_throughout(a) && covers(a, b)) || (is_throughout(b) && covers(b, a));
   const Allowed of_a = allowed(a), of_b = allowed(b);
-  return meet && std::max(of_a.least, of_b.least) > std::min(of_a.most, of_b.most);
+  const double least = std::max(of_a.least, of_b.least), most = std::min(of_a.most, of_b.most);
+  // Each clause has one bound, so equal ones are of both.
+  const bool is_empty_at_bound = a.kind == Kind::kNever || b.kind == Kind::kNever;
+  return meet && (least > most || (least == most && is_empty_at_bound));
 }
 
 }  // namespace

@@ -17,6 +17,8 @@ TEST(Contradictions, AreRefused) {
            {R"(always = "altitude <= 1 m")", R"(always = "altitude >= 120 cm")"},
            {R"(always = "altitude <= 1 m")", R"(eventually = "altitude >= 2 m")"},
            {R"(never = "altitude >= 1 m")", R"(eventually = "altitude >= 2 m")"},
+           {R"(never = "altitude >= 1 m")", R"(eventually = "altitude >= 1 m")"},
+           {R"(never = "altitude <= 9 cm")", R"(always = "altitude <= 9 cm")"},
            {"after = \"find\"\nalways = \"altitude <= 1 m\"",
             "after = \"find\"\nnever = \"altitude <= 1.5 m\""},
            {"during = [\"find\", \"fly\"]\nalways = \"distance <= 1 m\"",

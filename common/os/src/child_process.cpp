@@ -48,16 +48,9 @@ Started& started() {
   return all;
 }
 
-std::vector<std::string> merged_environment(const Environment& extra) {
-  std::map<std::string, std::string> variables;
-  for (char** entry = environ; *entry; ++entry) {
-    const std::string text = *entry;
-    const auto equals = text.find('=');
-    if (equals != std::string::npos) variables[text.substr(0, equals)] = text.substr(equals + 1);
-  }
-  for (const auto& [name, value] : extra) variables[name] = value;
+std::vector<std::string> texts_of(const Environment& environment) {
   std::vector<std::string> list;
-  for (const auto& [name, value] : variables) list.push_back(name + "=" + value);
+  for (const auto& [name, value] : environment) list.push_back(name + "=" + value);
   return list;
 }
 
@@ -131,6 +124,7 @@ struct Image {
   const char* working_folder;  // nullptr: as it is
   const cpu_set_t* cpus;       // nullptr: all
   int death_signal;
+  bool adopts_orphans;
   const std::function<int()>& body;
 };
 
@@ -170,6 +164,7 @@ void forget_handlers() {
 [[noreturn]] void become(const Image& image, const Streams& streams, int report, pid_t parent) {
   setpgid(0, 0);
   prctl(PR_SET_PDEATHSIG, image.death_signal);
+  if (image.adopts_orphans) prctl(PR_SET_CHILD_SUBREAPER, 1);
   if (getppid() != parent) _exit(127);
   dup2(streams.in() < 0 ? open("/dev/null", O_RDONLY) : streams.in(), STDIN_FILENO);
   dup2(streams.out(), STDOUT_FILENO);
@@ -190,13 +185,24 @@ void forget_handlers() {
 
 }  // namespace
 
+Environment merged_environment(const Environment& extra) {
+  std::map<std::string, std::string> variables;
+  for (char** entry = environ; *entry; ++entry) {
+    const std::string text = *entry;
+    const auto equals = text.find('=');
+    if (equals != std::string::npos) variables[text.substr(0, equals)] = text.substr(equals + 1);
+  }
+  for (const auto& [name, value] : extra) variables[name] = value;
+  return {variables.begin(), variables.end()};
+}
+
 ChildProcess::ChildProcess(const ChildCommand& command)
     : program_(command.body ? command.arguments.at(0)
                             : find_program(command.arguments.at(0)).string()),
       end_signal_(command.end_signal),
       grace_(command.grace) {
   std::vector<std::string> arguments = command.arguments;
-  std::vector<std::string> environment = merged_environment(command.environment);
+  std::vector<std::string> environment = texts_of(merged_environment(command.environment));
   const std::vector<char*> argv = pointers(arguments), envp = pointers(environment);
   const cpu_set_t cpus = to_set(command.cpus);
   const Streams streams(command);
@@ -209,6 +215,7 @@ ChildProcess::ChildProcess(const ChildCommand& command)
                     command.working_folder.empty() ? nullptr : command.working_folder.c_str(),
                     command.cpus.empty() ? nullptr : &cpus,
                     command.death_signal,
+                    command.adopts_orphans,
                     command.body};
   const pid_t parent = getpid();
   std::optional<Interrupt::Pause> alone;

@@ -77,6 +77,24 @@ void require_emulated(const Emulator& emulator, const std::filesystem::path& pro
       .about(program.string());
 }
 
+// Above its stack, a program has the texts of its variables and arguments, its own path, and an
+// address for each text.
+void pad_start(ChildCommand& command) {
+  constexpr std::size_t kTexts = 128, kBytes = 32 * 1024;
+  std::size_t texts = 0, bytes = command.arguments.at(1).size();
+  const auto add = [&](std::size_t size) { ++texts, bytes += size + 1; };
+  for (const auto& [name, value] : merged_environment(command.environment))
+    add(name.size() + 1 + value.size());
+  for (std::size_t i = 1; i < command.arguments.size(); ++i) add(command.arguments[i].size());
+  const std::size_t first = command.environment.size();
+  do {
+    const std::string number = std::to_string(1000 + texts % kTexts);
+    command.environment.emplace_back("TETHER_PADDING_" + number.substr(1), "");
+    add(command.environment.back().first.size() + 1);
+  } while (texts % kTexts != 0);
+  command.environment[first].second.assign((kBytes - bytes % kBytes) % kBytes, '-');
+}
+
 void UnmapCounts::operator()(CountPage* page) const {
   ::munmap(page, sizeof(CountPage));
 }
@@ -100,9 +118,13 @@ CountFile::CountFile(const Emulator& emulator)
   page_->cost_units = emulator.cost_units;
 }
 
+// Of the same length for each process, so that the library in the program needs the same memory.
 Environment CountFile::environment() const {
-  const std::string file =
-      "/proc/" + std::to_string(::getpid()) + "/fd/" + std::to_string(file_.descriptor());
+  const auto padded = [](int number) {
+    const std::string digits = std::to_string(number);
+    return std::string(10 - digits.size(), '/') + digits;
+  };
+  const std::string file = "/proc" + padded(::getpid()) + "/fd" + padded(file_.descriptor());
   Environment variables = {{"TETHER_COUNTS", file},
                            {"QEMU_PLUGIN", "file=" + plugin_.string() + ",page=" + file},
                            {"QEMU_CPU", emulator_.cpu_model}};
@@ -111,9 +133,7 @@ Environment CountFile::environment() const {
 }
 
 Duration CountFile::computed() const {
-  std::uint64_t units = 0;
-  for (std::size_t kind = 0; kind < kWorkClasses; ++kind)
-    units += page_->counts[kind].load(std::memory_order_relaxed) * emulator_.cost_units[kind];
+  const std::uint64_t units = page_->units.load();
   return Duration(static_cast<std::int64_t>(units / static_cast<std::uint64_t>(kCostUnitsPerNs)));
 }
 

@@ -1,7 +1,9 @@
 
 #include <algorithm>
+#include <cstdint>
 #include <fstream>
 #include <set>
+#include <sstream>
 #include <string>
 #include <thread>
 
@@ -55,6 +57,25 @@ std::vector<int> allowed_cpus() {
   for (int cpu = 0; cpu < CPU_SETSIZE; ++cpu)
     if (CPU_ISSET(static_cast<std::size_t>(cpu), &set)) cpus.push_back(cpu);
   return cpus;
+}
+
+// "cpu  USER NICE SYSTEM IDLE IOWAIT IRQ SOFTIRQ STEAL …"
+std::optional<ProcessorTime> parse_processor_time(std::string_view line, Duration tick) {
+  std::istringstream fields{std::string(line)};
+  std::string name;
+  std::int64_t user = 0, nice = 0, system = 0, idle = 0, io = 0, irq = 0, soft_irq = 0, steal = 0;
+  fields >> name >> user >> nice >> system >> idle >> io >> irq >> soft_irq >> steal;
+  if (!fields || name != "cpu") return std::nullopt;
+  return ProcessorTime{.used = tick * (user + nice + system + irq + soft_irq),
+                       .stolen = tick * steal,
+                       .idle = tick * (idle + io)};
+}
+
+std::optional<ProcessorTime> processor_time() {
+  std::ifstream file("/proc/stat");
+  std::string line;
+  std::getline(file, line);
+  return parse_processor_time(line, Duration(std::chrono::seconds(1)) / sysconf(_SC_CLK_TCK));
 }
 
 std::size_t allow_descriptors(std::size_t count) {

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cstdlib>
@@ -10,6 +11,7 @@
 #include <fcntl.h>
 #include <signal.h>
 #include <sys/prctl.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <tether/os/file_descriptor.h>
@@ -48,8 +50,12 @@ std::string folder_of(pid_t process) {
   return "/proc/" + std::to_string(process);
 }
 
+std::string threads_of(pid_t process) {
+  return folder_of(process) + "/task/";
+}
+
 std::vector<pid_t> listed_children(pid_t process) {
-  const std::string threads = folder_of(process) + "/task/";
+  const std::string threads = threads_of(process);
   std::vector<pid_t> found;
   for (const pid_t thread : numbers_in(threads)) {
     std::istringstream list(
@@ -57,6 +63,76 @@ std::vector<pid_t> listed_children(pid_t process) {
     for (pid_t child = 0; list >> child;) found.push_back(child);
   }
   return found;
+}
+
+void count(const std::string& stat, std::string_view left_out, ThreadStates& sum) {
+  const auto begin = stat.find('('), end = stat.rfind(')');
+  if (begin == std::string::npos || end == std::string::npos || end + 2 >= stat.size()) return;
+  if (!left_out.empty() && std::string_view(stat).substr(begin + 1, end - begin - 1) == left_out)
+    return;
+  switch (stat[end + 2]) {
+    case 'R':
+      ++sum.runnable;
+      break;
+    case 'D':
+    case 'T':
+    case 't':
+      ++sum.halted;
+      break;
+    case 'Z':
+    case 'X':
+      break;
+    default:
+      ++sum.waiting;
+  }
+}
+
+void add_states(pid_t process, std::string_view left_out, ThreadStates& sum) {
+  const std::string threads = threads_of(process);
+  for (const pid_t thread : numbers_in(threads))
+    if (const auto stat = text_of(threads + std::to_string(thread) + "/stat"))
+      count(*stat, left_out, sum);
+  for (const pid_t child : children_of(process)) add_states(child, left_out, sum);
+}
+
+Duration used_below(pid_t process) {
+  Duration used{0};
+  for (const pid_t child : children_of(process))
+    if (const auto stat = process_stat(child))
+      used += stat->used + stat->waited_children + used_below(child);
+  return used;
+}
+
+Duration used_by(int whom) {
+  rusage usage{};
+  getrusage(whom, &usage);
+  Duration used{0};
+  for (const timeval& part : {usage.ru_utime, usage.ru_stime})
+    used += std::chrono::seconds(part.tv_sec) + std::chrono::microseconds(part.tv_usec);
+  return used;
+}
+
+/// The number in "0100007F:A5C2" after the colon; 0: there is none.
+std::uint16_t port_in(std::string_view end_point) {
+  std::uint16_t port = 0;
+  const auto colon = end_point.find(':');
+  if (colon != std::string_view::npos)
+    std::from_chars(end_point.data() + colon + 1, end_point.data() + end_point.size(), port, 16);
+  return port;
+}
+
+/// The link that a descriptor of such a connection has in /proc/PID/fd; empty: there is none.
+std::string socket_link(const std::string& table, std::uint16_t local, std::uint16_t remote) {
+  std::istringstream lines(text_of(table).value_or(std::string()));
+  constexpr std::size_t kLocal = 1, kRemote = 2, kInode = 9;
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream fields(line);
+    std::array<std::string, kInode + 1> field;
+    for (std::string& text : field) fields >> text;
+    if (fields && port_in(field[kLocal]) == local && port_in(field[kRemote]) == remote)
+      return "socket:[" + field[kInode] + "]";
+  }
+  return "";
 }
 
 bool lists_children() {
@@ -76,8 +152,8 @@ std::optional<ProcessStat> process_stat(pid_t process) {
   std::istringstream rest(text->substr(name_end + 1));
   ProcessStat stat;
   rest >> stat.state;
-  constexpr std::size_t kParent = 4, kGroup = 5, kWaitedUser = 16, kWaitedSystem = 17,
-                        kIgnored = 33;
+  constexpr std::size_t kParent = 4, kGroup = 5, kUser = 14, kSystem = 15, kWaitedUser = 16,
+                        kWaitedSystem = 17, kIgnored = 33;
   std::array<std::string, kIgnored + 1> fields;  // some exceed every integer
   for (std::size_t i = kParent; i <= kIgnored; ++i) rest >> fields[i];
   if (!rest) return std::nullopt;
@@ -85,6 +161,7 @@ std::optional<ProcessStat> process_stat(pid_t process) {
   stat.parent = static_cast<pid_t>(number(kParent));
   stat.group = static_cast<pid_t>(number(kGroup));
   const Duration tick = Duration(std::chrono::seconds(1)) / sysconf(_SC_CLK_TCK);
+  stat.used = tick * (number(kUser) + number(kSystem));
   stat.waited_children = tick * (number(kWaitedUser) + number(kWaitedSystem));
   stat.ignores_child_end = ((number(kIgnored) >> (SIGCHLD - 1)) & 1) != 0;
   return stat;
@@ -101,6 +178,32 @@ std::vector<pid_t> children_of(pid_t process) {
     if (const auto stat = process_stat(other); stat && stat->parent == process)
       found.push_back(other);
   return found;
+}
+
+ThreadStates thread_states(pid_t process, std::string_view left_out) {
+  ThreadStates sum;
+  add_states(process, left_out, sum);
+  return sum;
+}
+
+bool has_connection(pid_t process, std::uint16_t local_port, std::uint16_t remote_port) {
+  const std::string folder = folder_of(process);
+  std::array<char, 64> target{};
+  for (const char* table : {"/net/tcp", "/net/tcp6"}) {
+    const std::string link = socket_link(folder + table, local_port, remote_port);
+    if (link.empty()) continue;
+    const auto descriptors = numbers_in(folder + "/fd");
+    return std::ranges::any_of(descriptors, [&](pid_t descriptor) {
+      const std::string file = folder + "/fd/" + std::to_string(descriptor);
+      const ssize_t size = readlink(file.c_str(), target.data(), target.size());
+      return size > 0 && std::string_view(target.data(), static_cast<std::size_t>(size)) == link;
+    });
+  }
+  return false;
+}
+
+Duration used_with_descendants() {
+  return used_by(RUSAGE_SELF) + used_by(RUSAGE_CHILDREN) + used_below(getpid());
 }
 
 void adopt_orphans() {

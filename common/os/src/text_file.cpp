@@ -63,8 +63,10 @@ std::filesystem::path behind_links(std::filesystem::path file) {
   return file;
 }
 
-void write_and_flush(const std::filesystem::path& file, std::string_view text) {
-  const FileDescriptor fd(::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644));
+/// Errors name `file`, which is to be replaced by `beside`.
+void write_and_flush(const std::filesystem::path& beside, const std::filesystem::path& file,
+                     std::string_view text) {
+  const FileDescriptor fd(::open(beside.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644));
   if (!fd) fail(file, "created");
   if (!write_all(fd, text)) fail(file, "written");
   if (::fsync(fd.get()) != 0) fail(file, "flushed to the disk");
@@ -74,6 +76,20 @@ std::string stripped(const std::string& line) {
   const auto begin = line.find_first_not_of(" \t\r");
   const auto end = line.find_last_not_of(" \t\r");
   return begin == std::string::npos ? "" : line.substr(begin, end - begin + 1);
+}
+
+/// The nearest name in the folder of a path; empty if there is none.
+std::string neighbour_like(const std::filesystem::path& path) {
+  constexpr std::size_t kMostNeighbours = 1000;
+  std::error_code failed;
+  std::vector<std::string> names;
+  const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+  for (std::filesystem::directory_iterator entry(folder, failed), end;
+       !failed && entry != end && names.size() < kMostNeighbours; entry.increment(failed))
+    names.push_back(entry->path().filename());
+  std::sort(names.begin(), names.end());
+  const std::vector<std::string_view> candidates(names.begin(), names.end());
+  return std::string(nearest(path.filename().native(), candidates));
 }
 
 }  // namespace
@@ -89,7 +105,7 @@ void write_file_atomically(const std::filesystem::path& path, std::string_view t
   const std::filesystem::path file = behind_links(path);
   const std::filesystem::path beside = file.string() + std::string(kPartSuffix);
   try {
-    write_and_flush(beside, text);
+    write_and_flush(beside, file, text);
     if (::rename(beside.c_str(), file.c_str()) != 0) fail(file, "replaced");
   } catch (...) {
     ::unlink(beside.c_str());
@@ -102,20 +118,19 @@ void write_file_atomically(const std::filesystem::path& path, std::string_view t
 }
 
 std::string why_no_file(const std::filesystem::path& path) {
-  constexpr std::size_t kMostNeighbours = 1000;
   std::error_code failed;
+  if (std::filesystem::is_directory(path, failed)) return "it is a folder, not a file";
   if (std::filesystem::exists(path, failed)) return "it is not a regular file";
   if (failed) return "it cannot be reached: " + failed.message();
-  std::vector<std::string> names;
-  const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
-  for (std::filesystem::directory_iterator entry(folder, failed), end;
-       !failed && entry != end && names.size() < kMostNeighbours; entry.increment(failed))
-    names.push_back(entry->path().filename());
-  std::sort(names.begin(), names.end());
-  const std::vector<std::string_view> candidates(names.begin(), names.end());
-  const std::string_view near = nearest(path.filename().native(), candidates);
-  return "there is no such file" +
-         (near.empty() ? "" : "; did you mean '" + std::string(near) + "'?");
+  // The first part of the path that is missing.
+  std::filesystem::path missing = path;
+  while (missing.has_parent_path() && missing.has_relative_path() &&
+         !std::filesystem::exists(missing.parent_path(), failed))
+    missing = missing.parent_path();
+  const std::string near = neighbour_like(missing);
+  return (missing == path ? "there is no such file"
+                          : "there is no folder '" + missing.string() + "'") +
+         (near.empty() ? "" : "; did you mean '" + near + "'?");
 }
 
 std::string read_file(const std::filesystem::path& file, std::uintmax_t limit) {

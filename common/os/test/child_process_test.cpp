@@ -163,6 +163,22 @@ TEST_F(Child, GetsItsEndSignalAndIsKilledAfterItsGrace) {
             kSignalled + SIGKILL);
 }
 
+// However early they lose their own parent.
+TEST_F(Child, AdoptsItsOrphansIfAsked) {
+  for (const bool adopts : {false, true}) {
+    const auto number = scratch_.path(adopts ? "adopted" : "not_adopted");
+    ChildCommand command =
+        shell("(setsid sh -c 'until [ -e " + number.string() + ".go ]; do :; done' & echo $! >" +
+              number.string() + "); touch " + number.string() + ".ready; exec sleep 600");
+    command.adopts_orphans = adopts;
+    const ChildProcess child(command);
+    while (!std::filesystem::exists(number.string() + ".ready")) std::this_thread::yield();
+    const pid_t orphan = std::stoi(read_whole(number));
+    EXPECT_EQ(process_stat(orphan)->parent == child.pid(), adopts);
+    std::ofstream(number.string() + ".go").put('x');
+  }
+}
+
 TEST_F(Child, EndsOrphansButNoProcessThatItStarted) {
   adopt_orphans();
   const ChildProcess running(shell("exec sleep 600"));

@@ -44,10 +44,40 @@ TEST_F(CountedProgram, HasAPageOfItsOwnWithTheCosts) {
   EXPECT_EQ(page.cost_units, emulator_.cost_units);
 
   EXPECT_EQ(counts.computed(), Duration(0));
-  page.counts[2] = 5 * kCostUnitsPerNs;
+  page.units = 45 * kCostUnitsPerNs + 1;
   memory.seekp(0).write(reinterpret_cast<const char*>(&page), sizeof page).flush();
   EXPECT_EQ(counts.computed(), Duration(45));
   EXPECT_EQ(other.computed(), Duration(0));
+}
+
+TEST_F(CountedProgram, BeginsWithTheSameMemoryWhateverItsVariablesAndArguments) {
+  // Texts and bytes above the program's stack.
+  const auto size = [](const ChildCommand& command) {
+    std::pair<std::size_t, std::size_t> sum{0, command.arguments[1].size()};
+    const auto add = [&](std::size_t bytes) { ++sum.first, sum.second += bytes + 1; };
+    for (const auto& [name, value] : merged_environment(command.environment))
+      add(name.size() + value.size() + 1);
+    for (std::size_t i = 1; i < command.arguments.size(); ++i) add(command.arguments[i].size());
+    return sum;
+  };
+  ChildCommand bare{.arguments = {"qemu-x86_64", "/bin/p"}, .environment = {}, .log = {}};
+  pad_start(bare);
+  EXPECT_EQ(size(bare).first % 128, 0u);
+  EXPECT_EQ(size(bare).second % (32 * 1024), 0u);
+  for (const std::size_t length : {0u, 1u, 7u, 1000u}) {
+    ChildCommand other{
+        .arguments = {"/usr/bin/qemu-x86_64", "/usr/bin/program", std::string(length, 'a')},
+        .environment = {{"ONE", std::string(length, 'x')}, {"TWO", ""}},
+        .log = {}};
+    pad_start(other);
+    EXPECT_EQ(size(other), size(bare)) << length;
+  }
+}
+
+TEST_F(CountedProgram, HasAPageWhoseNameIsAsLongForEachProcess) {
+  const CountFile counts(emulator_);
+  const auto first = counts.environment();
+  EXPECT_EQ(std::map(first.begin(), first.end()).at("TETHER_COUNTS").size(), 28u);
 }
 
 TEST_F(CountedProgram, IsOneOfTheEmulatorsProcessor) {

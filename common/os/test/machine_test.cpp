@@ -22,6 +22,17 @@ TEST(Machine, HasAtLeastTheCoresThatThisProcessMayUse) {
   EXPECT_LE(separate_cores(), static_cast<int>(cpus.size()));
 }
 
+TEST(Machine, TellsHowItsProcessorsSpentTheirTime) {
+  using namespace std::chrono_literals;
+  EXPECT_EQ(parse_processor_time("cpu  54886 36131 14990 19588 895 1 210 607 0 0", 10ms),
+            (ProcessorTime{(54'886 + 36'131 + 14'990 + 1 + 210) * Duration(10ms), 6'070ms,
+                           (19'588 + 895) * Duration(10ms)}));
+  EXPECT_FALSE(parse_processor_time("cpu0 1 2 3 4 5 6 7 8", 10ms));
+  EXPECT_FALSE(parse_processor_time("cpu 1 2 3 4", 10ms));
+  EXPECT_FALSE(parse_processor_time("", 10ms));
+  EXPECT_GT(processor_time()->used, 0s);
+}
+
 TEST(Machine, AllowsAsManyDescriptorsAsTheHardLimit) {
   rlimit before{};
   ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &before), 0);

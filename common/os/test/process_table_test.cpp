@@ -1,12 +1,18 @@
 #include <algorithm>
+#include <array>
 #include <csignal>
 #include <ctime>
 #include <thread>
 
+#include <arpa/inet.h>
 #include <gtest/gtest.h>
+#include <pthread.h>
+#include <sys/prctl.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <tether/os/file_descriptor.h>
 #include <tether/os/process_table.h>
 
 namespace tether::os {
@@ -72,6 +78,67 @@ TEST_F(ProcessTable, ShowsWhatAProcessKnowsOfItsChildren) {
   EXPECT_GE(stat->waited_children, std::chrono::milliseconds(80));
   EXPECT_LE(stat->waited_children, std::chrono::milliseconds(200));
   EXPECT_TRUE(stat->ignores_child_end);
+  EXPECT_LE(stat->used, std::chrono::milliseconds(80));
+  const Duration with_child = used_with_descendants();
+  end();
+  EXPECT_GE(with_child, std::chrono::milliseconds(80));
+  EXPECT_GE(used_with_descendants(), std::chrono::milliseconds(80));
+}
+
+// Of this process there is the calling thread, which runs.
+TEST_F(ProcessTable, CountsTheThreadsOfAProcessAndItsDescendantsByState) {
+  const ThreadStates alone = thread_states(getpid());
+  EXPECT_EQ(alone.runnable, 1);
+  stopped_child([] {
+    if (fork() == 0) {
+      prctl(PR_SET_PDEATHSIG, SIGKILL);
+      pause();
+    }
+    const pid_t ended = fork();
+    if (ended == 0) _exit(0);
+    siginfo_t info{};
+    waitid(P_PID, static_cast<id_t>(ended), &info, WEXITED | WNOWAIT);
+  });
+  ThreadStates states;
+  do states = thread_states(getpid());
+  while (states.waiting == alone.waiting);
+  EXPECT_EQ(states.runnable, 1);
+  EXPECT_EQ(states.waiting, alone.waiting + 1);
+  EXPECT_EQ(states.halted, alone.halted + 1);
+}
+
+TEST_F(ProcessTable, LeavesOutThreadsOfAName) {
+  std::array<char, 16> name{};
+  pthread_getname_np(pthread_self(), name.data(), name.size());
+  pthread_setname_np(pthread_self(), "odd) R (name");
+  EXPECT_EQ(thread_states(getpid()).runnable, 1);
+  EXPECT_EQ(thread_states(getpid(), "odd) R (name").runnable, 0);
+  pthread_setname_np(pthread_self(), name.data());
+}
+
+std::uint16_t port_of(int descriptor, decltype(&getsockname) name) {
+  sockaddr_in address{};
+  socklen_t size = sizeof address;
+  EXPECT_EQ(name(descriptor, reinterpret_cast<sockaddr*>(&address), &size), 0);
+  return ntohs(address.sin_port);
+}
+
+TEST_F(ProcessTable, FindsAConnectionInTheProcessThatHasIt) {
+  const FileDescriptor server(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  ASSERT_EQ(bind(server.get(), reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
+  ASSERT_EQ(listen(server.get(), 1), 0);
+  address.sin_port = htons(port_of(server.get(), getsockname));
+  const pid_t without = stopped_child([] {});
+  const FileDescriptor client(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  ASSERT_EQ(connect(client.get(), reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
+  const std::uint16_t here = port_of(client.get(), getsockname);
+  const std::uint16_t there = port_of(client.get(), getpeername);
+  EXPECT_TRUE(has_connection(getpid(), here, there));
+  EXPECT_FALSE(has_connection(getpid(), static_cast<std::uint16_t>(here + 1), there));
+  EXPECT_FALSE(has_connection(without, here, there));
 }
 
 TEST_F(ProcessTable, FindsTheChildrenOfEveryThread) {

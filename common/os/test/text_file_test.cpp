@@ -38,7 +38,7 @@ TEST(WriteFileAtomically, NamesTheFileAndKeepsItsContentWhenItFails) {
   const auto file = scratch.write("a.json", "old");
   fs::create_directories(scratch.path("a.json.part"));
   const Error error = thrown_error(ErrorCode::kSetup, [&] { write_file_atomically(file, "new"); });
-  EXPECT_EQ(error.where().file, scratch.path("a.json.part"));
+  EXPECT_EQ(error.where().file, file);
   EXPECT_EQ(read_file(file), "old");
 }
 
@@ -87,7 +87,10 @@ TEST(WhyNoFile, SuggestsTheNearestNameInTheFolder) {
   scratch.write("hover.toml", "");
   EXPECT_NE(why_no_file(scratch.path("hovr.toml")).find("'hover.toml'"), std::string::npos);
   EXPECT_EQ(why_no_file(scratch.path("quux")).find('\''), std::string::npos);
-  EXPECT_EQ(why_no_file(scratch.path("none/hovr.toml")).find('\''), std::string::npos);
+  scratch.write("models/drone/model.sdf", "");
+  EXPECT_NE(why_no_file(scratch.path("models/dron/model.sdf")).find("'drone'"), std::string::npos);
+  EXPECT_NE(why_no_file(scratch.path("none/hovr.toml")).find("none'"), std::string::npos);
+  EXPECT_NE(why_no_file(scratch.path("models")).find("a folder"), std::string::npos);
 }
 
 // Values of the FNV reference (Fowler, Noll, Vo): fnv1a_64 of "" and of "foobar".

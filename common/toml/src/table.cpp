@@ -1,3 +1,5 @@
+#include "syntax_error.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -286,6 +288,10 @@ std::filesystem::path Table::existing_file(std::string_view key) const {
 
 std::vector<const Node*> Table::elements(std::string_view key, std::string_view expected) const {
   const Node& node = required(key);
+  if (raw(node).is_string())
+    fail_at(node, key,
+            "must be " + string_of(expected) + ", but is " + describe(raw(node)) +
+                ". Write it in brackets: [\"" + raw(node).as_string()->get() + "\"]");
   if (!raw(node).is_array()) fail_type(key, node, expected);
   std::vector<const Node*> elements;
   for (const ::toml::node& element : *raw(node).as_array()) elements.push_back(&opaque(element));
@@ -339,6 +345,10 @@ bool Table::is_table(std::string_view key) const {
   return raw(required(key)).is_table();
 }
 
+bool Table::is_text(std::string_view key) const {
+  return raw(required(key)).is_string();
+}
+
 Table Table::table(std::string_view key) const {
   const Node& node = required(key);
   if (!raw(node).is_table()) fail_type(key, node, "a table");
@@ -368,8 +378,13 @@ std::vector<Table> Table::tables(std::string_view key) const {
 }
 
 std::vector<Table> Table::tables(std::string_view key, Keys allowed) const {
+  return tables(key, std::span(allowed.begin(), allowed.size()));
+}
+
+std::vector<Table> Table::tables(std::string_view key,
+                                 std::span<const std::string_view> allowed) const {
   std::vector<Table> any = tables(key);
-  for (const Table& table : any) table.require_keys_in({allowed.begin(), allowed.size()});
+  for (const Table& table : any) table.require_keys_in(allowed);
   return any;
 }
 
@@ -387,26 +402,43 @@ Document Document::load(const std::filesystem::path& file) {
 }
 
 Document Document::parse(std::string_view text, const std::string& file) {
+  if (const std::string why = wrong_encoding(text); !why.empty())
+    throw Error(ErrorCode::kBadFile, {file, 1}, why);
   try {
     auto tree = std::make_unique<::toml::table>(::toml::parse(text, file));
     return {std::unique_ptr<Node, Delete>(reinterpret_cast<Node*>(tree.release())),  // NOLINT
             file};
   } catch (const ::toml::parse_error& error) {
-    throw Error(ErrorCode::kBadFile, {file, line_of(error.source())},
-                "not valid TOML: " + std::string(error.description()));
+    const int line = line_of(error.source());
+    throw Error(ErrorCode::kBadFile, {file, line},
+                syntax_error(line_of_text(text, line), error.description()));
   }
 }
 
 namespace {
 
-/// The number or boolean that `text` is, or itself, as if it stood on that line of the file.
+bool is_list_of_values(const ::toml::node& node) {
+  const ::toml::array* array = node.as_array();
+  return array != nullptr && std::ranges::all_of(*array, [](const ::toml::node& element) {
+           return element.is_value();
+         });
+}
+
+/// The number, boolean or array that `text` is, or itself, as if it stood on that line of the file.
 void replace_value(::toml::table& table, std::string_view key, const std::string& text, int line) {
   const std::string before(static_cast<std::size_t>(std::max(0, line - 1)), '\n');
   try {
     ::toml::table parsed = ::toml::parse(before + "value = " + text);
     ::toml::node* value = parsed.size() == 1 ? parsed.get("value") : nullptr;
-    if (value != nullptr && (value->is_number() || value->is_boolean())) {
-      value->visit([&](auto& own) { table.insert_or_assign(key, std::move(own)); });
+    if (value != nullptr &&
+        (value->is_number() || value->is_boolean() || is_list_of_values(*value))) {
+      // A copy has no line.
+      value->visit([&](auto& own) {
+        if (line > 0)
+          table.insert_or_assign(key, std::move(own));
+        else
+          table.insert_or_assign(key, own);
+      });
       return;
     }
   } catch (const ::toml::parse_error&) {  // a string
@@ -414,28 +446,36 @@ void replace_value(::toml::table& table, std::string_view key, const std::string
   table.insert_or_assign(key, text);
 }
 
-std::size_t replace_in(::toml::node& node, std::string_view path, const std::string& text) {
+/// `adds`: only where the key is missing, which is added, in a new table if need be.
+std::size_t replace_in(::toml::node& node, std::string_view path, const std::string& text,
+                       bool adds) {
   std::size_t replaced = 0;
   if (::toml::array* array = node.as_array()) {
-    for (::toml::node& element : *array) replaced += replace_in(element, path, text);
+    for (::toml::node& element : *array) replaced += replace_in(element, path, text, adds);
     return replaced;
   }
   ::toml::table* table = node.as_table();
   if (table == nullptr) return 0;
   const std::size_t dot = path.find('.');
   const std::string_view key = path.substr(0, dot);
+  const bool is_last = dot == std::string_view::npos;
+  if (adds && !is_last && !table->contains(key)) table->insert(key, ::toml::table{});
   ::toml::node* child = table->get(key);
-  if (child == nullptr) return 0;
-  if (dot != std::string_view::npos) return replace_in(*child, path.substr(dot + 1), text);
-  if (!child->is_value()) return 0;
-  replace_value(*table, key, text, line_of(child->source()));
+  if (child != nullptr && !is_last) return replace_in(*child, path.substr(dot + 1), text, adds);
+  if (!is_last || (child == nullptr) != adds) return 0;
+  if (child != nullptr && !child->is_value() && !is_list_of_values(*child)) return 0;
+  replace_value(*table, key, text, child == nullptr ? 0 : line_of(child->source()));
   return 1;
 }
 
 }  // namespace
 
 std::size_t Document::replace(std::string_view path, const std::string& text) {
-  return replace_in(reinterpret_cast<::toml::table&>(*tree_), path, text);  // NOLINT
+  return replace_in(reinterpret_cast<::toml::table&>(*tree_), path, text, false);  // NOLINT
+}
+
+std::size_t Document::add(std::string_view path, const std::string& text) {
+  return replace_in(reinterpret_cast<::toml::table&>(*tree_), path, text, true);  // NOLINT
 }
 
 Table Document::root() const {

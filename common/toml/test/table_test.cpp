@@ -204,6 +204,7 @@ TEST(Document, ReplacesAValueWhereverThePathNamesOne) {
          return d[0].text("e") == "new file.toml" && d[2].text("e") == "new file.toml" &&
                 d[1].integer("f", 0, 9) == 3;
        }},
+      {"a", "[1, 2]", 1, [](const Table& t) { return t.numbers("a", {}).size() == 2; }},
       {"b", "1", 0, [](const Table& t) { return t.is_table("b"); }},
       {"b.x", "1", 0, [](const Table& t) { return !t.table("b").has("x"); }},
       {"a.b", "1", 0, [](const Table& t) { return t.integer("a", 0, 9) == 1; }},
@@ -215,6 +216,21 @@ TEST(Document, ReplacesAValueWhereverThePathNamesOne) {
     EXPECT_EQ(document.replace(c.path, c.value), c.replaced);
     EXPECT_TRUE(c.is_there(document.root()));
   }
+}
+
+TEST(Document, AddsAValueWhereThereIsNone) {
+  Document document = Document::parse("a = 1\n[[c]]\nd = 2\n[[c]]\n", "f.toml");
+  EXPECT_EQ(document.add("a", "5"), 0u);
+  EXPECT_EQ(document.add("a.b", "5"), 0u);
+  EXPECT_EQ(document.add("c.d", "3"), 1u);
+  EXPECT_EQ(document.add("b.e", "[1, 2]"), 1u);
+  EXPECT_EQ(document.root().integer("a", 0, 9), 1);
+  EXPECT_EQ(document.root().tables("c")[0].integer("d", 0, 9), 2);
+  EXPECT_EQ(document.root().tables("c")[1].integer("d", 0, 9), 3);
+  EXPECT_EQ(document.root().table("b").numbers("e", {}).size(), 2u);
+  const Error error =
+      bad_file_error([&] { (void)document.root().tables("c")[1].number("d", {.min = 4.0}); });
+  EXPECT_EQ(error.where().line, 0) << "the file has no such line";
 }
 
 TEST(Document, PlacesMistakesInAReplacedValueAtItsKey) {

@@ -24,8 +24,10 @@ Verdict audit(const record::Record& record) {
   const Boundaries grid(record.header.step);
   check_consistency(record, grid, report);
   check_motion(record, report);
+  check_contacts(record, report);
   check_radio(record, grid, report);
-  check_battery(record, report);
+  check_channel(record, grid, report);
+  check_battery(record, grid, report);
   if (verdict.synchronised) {
     check_interactions(record, grid, report);
     check_rows(record, report);

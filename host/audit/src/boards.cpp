@@ -34,7 +34,8 @@ struct Span {
 
 class PoolCheck {
  public:
-  PoolCheck(Wide cores, std::size_t suts, Report& report) : cores_(cores), report_(report) {
+  PoolCheck(Wide cores, std::size_t suts, Report& report)
+      : cores_(cores), has_cores_for_all_(cores >= static_cast<Wide>(suts)), report_(report) {
     for (Wide n = 2; n <= static_cast<Wide>(suts); ++n) per_ns_ = per_ns_ / gcd(per_ns_, n) * n;
   }
 
@@ -89,6 +90,7 @@ class PoolCheck {
     if (known_until_ && span.end() > *known_until_)
       return;  // a SUT computes of which no more is known
     const auto& computed = span.entry->message.computed;
+    if (!computed && has_cores_for_all_) return;  // all of it
     if (!computed || *computed < Duration(0))
       return report_.add(5, *span.entry, "computed an unknown time on a shared board");
     const Wide work = wide(*computed) * per_ns_, begin = computed_until(span.begin);
@@ -101,6 +103,7 @@ class PoolCheck {
   }
 
   Wide cores_;
+  bool has_cores_for_all_;  // each SUT has a core whenever it computes
   Report& report_;
   Wide per_ns_ = 1;  // units of work: divisible by each number of SUTs
   std::vector<Span> spans_;
@@ -131,10 +134,31 @@ void check_equal_stops(const record::BoardInfo& board, const std::map<std::strin
   }
 }
 
+// The header's list, its SUTs and their messages name the same boards.
+void check_names(const record::Record& record, const std::map<std::string, SutRow>& rows,
+                 Report& report) {
+  std::set<std::string> known, used;
+  for (const record::BoardInfo& board : record.header.boards) known.insert(board.name);
+  for (const auto& [uav, row] : rows) {
+    const std::string& board = row.info->board;
+    if (!board.empty() && !known.contains(board))
+      report.add("the SUT of \"" + uav + "\" is on the board \"" + board +
+                 "\", which the header does not have");
+    used.insert(board);
+    for (const Entry* entry : row.interactions)
+      if (board.empty() && entry->message.computed)
+        report.add(5, *entry, "computed {} as on a shared board, by a SUT that shares none",
+                   ns(*entry->message.computed));
+  }
+  for (const std::string& board : known)
+    if (!used.contains(board)) report.add("no SUT is on the board \"" + board + "\"");
+}
+
 }  // namespace
 
 void check_boards(const record::Record& record, Report& report) {
   const auto rows = rows_of(record);
+  check_names(record, rows, report);
   for (const record::BoardInfo& board : record.header.boards) {
     if (board.is_real) {
       check_equal_stops(board, rows, report);

@@ -33,8 +33,14 @@ void check_commands(const record::Record& record, const Boundaries& grid, Report
 /// none is received late or out of order.
 void check_radio(const record::Record& record, const Boundaries& grid, Report& report);
 
-/// Rule 1 for readings of the battery: what it had at that ST, by the battery's channel.
-void check_battery(const record::Record& record, Report& report);
+/// Rule 0: what became of each message follows from the settings of the radio, the positions of the
+/// UAVs and the draws. Only if the header has the settings.
+void check_channel(const record::Record& record, const Boundaries& grid, Report& report);
+
+/// Rule 0: charge, voltage, current and energy by cause agree with each other, and with what was
+/// computed, by the battery's model in the header. Rule 1 for readings of the battery: what it had
+/// at that ST, by the battery's channel.
+void check_battery(const record::Record& record, const Boundaries& grid, Report& report);
 
 /// Rules 3 and 4 across SUTs: replies are sent in the order of their timestamps, and ST never
 /// passes a SUT that can still act, in the order of the file and of wall time.
@@ -43,11 +49,16 @@ void check_order(const record::Record& record, const Boundaries& grid, Report& r
 /// Rule 0 for any policy: header, numbering, ground truth, log times, wall times.
 void check_consistency(const record::Record& record, const Boundaries& grid, Report& report);
 
-/// Rule 0 for any policy: no UAV moves faster than it can fly, no command is beyond what a SUT can
-/// give.
+/// Rule 0 for any policy: poses, velocities and clearances describe one flight, which the UAV can
+/// fly; no command is beyond what a SUT can give.
 void check_motion(const record::Record& record, Report& report);
 
-/// Rule 0: the footer's figures, and for synchronised runs also the times at the end.
+/// Rule 0 for any policy: contacts agree with the ground truth around them, and a UAV that comes to
+/// touch something has one.
+void check_contacts(const record::Record& record, Report& report);
+
+/// Rule 0: the footer's figures and numbers of messages, and how the run ended; for synchronised
+/// runs also the times at the end.
 void check_end(const record::Record& record, const Boundaries& grid, Report& report);
 
 }  // namespace tether::audit

@@ -55,9 +55,17 @@ std::vector<Due> match(Row& row, Report& report) {
     Due item{command, nullptr, wide(effect_at.value_or(SimTime{}))};
     if (effect != row.effects.end() && sequence_of(*effect) == sequence_of(command)) {
       item.effect = *effect;
-      if (effect_at && (*effect)->message.applied_at != *effect_at)
-        report.add(2, **effect, "effect at ST {} instead of ST {}",
-                   ns((*effect)->message.applied_at), ns(*effect_at));
+      const CommandEffect& applied = (*effect)->message;
+      if (command->message.command && applied.command() != *command->message.command)
+        report.add(2, **effect,
+                   "({}, {}, {}) m/s and {} rad/s take effect instead of what was commanded, ({}, "
+                   "{}, {}) m/s and {} rad/s",
+                   applied.vx_H_m_s, applied.vy_H_m_s, applied.vz_H_m_s, applied.yaw_rate_rad_s,
+                   command->message.command->vx_H_m_s, command->message.command->vy_H_m_s,
+                   command->message.command->vz_H_m_s, command->message.command->yaw_rate_rad_s);
+      if (effect_at && applied.applied_at != *effect_at)
+        report.add(2, **effect, "effect at ST {} instead of ST {}", ns(applied.applied_at),
+                   ns(*effect_at));
     }
     if (effect_at) due.push_back(item);
   }
@@ -119,9 +127,20 @@ Wide end_of(const record::Record& record) {
   return record.interactions.empty() ? Wide{0} : wide(record.interactions.back().at);
 }
 
+// Each command has its value, if any has.
+void check_values(const record::Record& record, Report& report) {
+  const auto has_value = [](const Logged<Interaction>& e) { return e.message.command.has_value(); };
+  if (std::ranges::none_of(record.interactions, has_value)) return;  // Tether 0.1.0
+  for (const Logged<Interaction>& entry : record.interactions)
+    if (has_value(entry) != (entry.message.kind == record::kCommand))
+      report.add(0, entry, "a {} {} a velocity", entry.message.kind,
+                 has_value(entry) ? "with" : "without");
+}
+
 }  // namespace
 
 void check_commands(const record::Record& record, const Boundaries& grid, Report& report) {
+  check_values(record, report);
   std::map<std::string, Row> rows;
   for (const record::SutInfo& sut : record.header.suts) rows[sut.uav].concurrent = sut.concurrent;
   for (const Logged<Interaction>& entry : record.interactions) {

@@ -85,6 +85,7 @@ class ConsistencyCheck {
     const Interaction& message = entry.message;
     check_log_time(entry, message.st_at_release);
     check_wall_times(message, entry);
+    check_pace(message, entry);
     if (!is_known_kind(message.kind)) report_.add(0, entry, "unknown kind \"{}\"", message.kind);
     // For synchronised records, check_order checks the order of log times.
     if (record_.header.policy == record::kFreeRunning) {
@@ -109,6 +110,21 @@ class ConsistencyCheck {
       report_.add(0, entry, "reply sent {} before the previous reply in the record",
                   ns(wide(wall_at_last_release_) - wide(release)));
     wall_at_last_release_ = std::max(wall_at_last_release_, release);
+  }
+
+  // Rule 8: ST is not ahead of its limit relative to WT.
+  void check_pace(const Interaction& message, const Logged<Interaction>& entry) {
+    const record::Header& header = record_.header;
+    if (!(header.real_time_factor > 0.0) || header.wall_at_start == WallTime{} ||
+        message.wall_at_arrival == WallTime{})
+      return;
+    constexpr double kRounding_s = 1e-3;
+    const double wall_s =
+        static_cast<double>(wide(message.wall_at_arrival) - wide(header.wall_at_start)) * 1e-9;
+    const double st_s = static_cast<double>(wide(message.st_at_arrival)) * 1e-9;
+    if (st_s > header.real_time_factor * wall_s * (1.0 + kRounding_s) + kRounding_s)
+      report_.add(8, entry, "arrived at ST {} after {:.6f} s, faster than {} of real time",
+                  ns(message.st_at_arrival), wall_s, header.real_time_factor);
   }
 
   template <class Message>
@@ -148,16 +164,27 @@ class ConsistencyCheck {
                                missing, kMostOpenCalls)});
   }
 
-  // Rule 8: only a read that waits for its sensor's next measurement is held, or a receive, and
-  // readings are of the state at release.
+  // Rule 8: only a read that waits for its sensor's next measurement is held, a receive or a sleep,
+  // and readings are of the state at release.
   void check_free_running(const Logged<Interaction>& entry) {
     const Interaction& message = entry.message;
     if (message.kind == record::kSensor) {
       check_free_reading(entry);
+    } else if (message.kind == record::kSleep) {
+      check_free_sleep(entry);
     } else if (message.kind != record::kReceive && message.st_at_release != message.st_at_arrival) {
       report_.add(8, entry, "held from ST {} to {} in a free-running record",
                   ns(message.st_at_arrival), ns(message.st_at_release));
     }
+  }
+
+  void check_free_sleep(const Logged<Interaction>& entry) {
+    const Interaction& message = entry.message;
+    if (!message.sleep_until) return report_.add(0, entry, "sleep without its end");
+    const Wide wake =
+        std::max(wide(message.st_at_arrival), grid_.at_or_after(wide(*message.sleep_until)));
+    if (wide(message.st_at_release) != wake)
+      report_.add(8, entry, "woken at ST {} instead of ST {}", ns(message.st_at_release), ns(wake));
   }
 
   void check_free_reading(const Logged<Interaction>& entry) {

@@ -24,16 +24,31 @@ void check_et(const Entry& entry, const History& sut, Report& report) {
                ns(entry.message.request_at), ns(sut.last_reply_at));
 }
 
+// Of the SUT's clock, since the previous reply.
+Wide growth(const Entry& entry, const History& sut) {
+  const record::Interaction& m = entry.message;
+  return m.computed ? wide(*m.computed) : wide(m.request_at) - wide(sut.last_reply_at);
+}
+
 void check_growth(const Entry& entry, const record::SutInfo& info, const History& sut,
                   Report& report) {
   if (sut.last_wall_at_release == WallTime{} || entry.message.wall_at_arrival == WallTime{}) {
     return;
   }
-  const Wide grown = entry.message.computed
-                         ? wide(*entry.message.computed)
-                         : wide(entry.message.request_at) - wide(sut.last_reply_at);
+  const Wide grown = growth(entry, sut);
   const Wide elapsed = wide(entry.message.wall_at_arrival) - wide(sut.last_wall_at_release);
   if (const auto fault = growth_fault(info, grown, elapsed)) report.add(5, entry, "{}", *fault);
+}
+
+// Rule 5: each reading of a scripted clock takes its time, and the request is one.
+void check_script(const Entry& entry, const record::SutInfo& info, const History& sut,
+                  Report& report) {
+  const Wide reading = wide(info.computing);
+  if (info.clock != "scripted" || reading <= 0) return;
+  const Wide grown = growth(entry, sut);
+  if (grown < reading || grown % reading != 0)
+    report.add(5, entry, "ET grew by {}, but the scripted clock grows by {} at a time", ns(grown),
+               ns(reading));
 }
 
 // Rule 4: ST on arrival is not before the SUT's last release.
@@ -52,6 +67,7 @@ void check_rows(const record::Record& record, Report& report) {
     for (const Entry* entry : row.interactions) {
       check_et(*entry, history, report);
       check_growth(*entry, *row.info, history, report);
+      check_script(*entry, *row.info, history, report);
       check_arrival(*entry, history, report);
       history = {entry->message.wall_at_release, entry->message.reply_at,
                  entry->message.st_at_release,

@@ -23,8 +23,7 @@ std::string headline(const Verdict& verdict) {
     return fmt::format("{}: {} interactions, not synchronised: rules 1 to 7 do not apply\n", how,
                        verdict.interactions);
   }
-  return fmt::format("{}: {} interactions follow the rules of time; largest grid error {:.6f} ms\n",
-                     how, verdict.interactions, to_seconds(verdict.largest_grid_error) * 1e3);
+  return fmt::format("{}: {} interactions follow the rules of time\n", how, verdict.interactions);
 }
 
 std::string line_of(const Finding& finding) {
@@ -46,6 +45,9 @@ std::string to_line(const Verdict& verdict) {
 
 std::string to_text(const Verdict& verdict, std::size_t max_findings) {
   std::string text = headline(verdict);
+  if (verdict.synchronised && verdict.findings.empty())
+    text += fmt::format("  largest grid error {:.6f} ms\n",
+                        to_seconds(verdict.largest_grid_error) * 1e3);
   for (const std::string& note : verdict.notes) text += fmt::format("  note: {}\n", note);
   const std::size_t shown = std::min(max_findings, verdict.findings.size());
   for (std::size_t i = 0; i < shown; ++i)

@@ -202,6 +202,8 @@ Record free_running() {
     entry.message.st_at_arrival = entry.message.st_at_release;
     entry.message.lag = Duration(0);
     if (entry.message.sample_state_at) entry.message.sample_state_at = entry.message.st_at_arrival;
+    if (entry.message.sleep_until)
+      entry.message.sleep_until = from_ns<ExecTime>(to_ns(entry.message.st_at_release));
   }
   record.footer->largest_lag = Duration(0);
   return record;
@@ -278,6 +280,13 @@ TEST(Audit, BreachesInFreeRunningRecordsAreFound) {
       altered(immediate, [](auto& r) { r.interactions.back().message.st_at_arrival -= kStep; }),
       Rules{8})
       << "a finish";
+  for (const Duration change : {-kStep, kNs, kStep}) {
+    Record late = immediate;
+    *std::ranges::find_if(late.interactions, [](const Entry& entry) {
+       return entry.message.sleep_until.has_value();
+     })->message.sleep_until += change;
+    EXPECT_EQ(rules_of(late), change > Duration(0) ? Rules{8} : Rules{}) << change.count();
+  }
   EXPECT_EQ(altered(immediate, [](auto& r) { r.footer->interactions -= 1; }), Rules{0});
   EXPECT_EQ(altered(immediate, [](auto& r) { r.ground_truth.erase(r.ground_truth.begin()); }),
             Rules{0});

@@ -28,6 +28,14 @@ while read -r key value rest; do
   esac
 done </proc/meminfo 2>/dev/null
 
+# How long some program waited for a processor, and how long other virtual machines had ours (ticks
+# of 10 ms), since the start.
+while read -r kind rest; do
+  [ "$kind" = some ] && emit cpu_wait_us "${rest##*total=}"
+done </proc/pressure/cpu 2>/dev/null
+read -r kind user nice system idle io irq soft_irq steal rest </proc/stat 2>/dev/null
+emit cpu_stolen_ticks "$steal"
+
 emit_file clock_source /sys/devices/system/clocksource/clocksource0/current_clocksource
 
 # Of all cores: the governor (each kind once), the lowest and the highest frequency now.

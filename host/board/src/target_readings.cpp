@@ -19,6 +19,8 @@ using record::Readings;
 constexpr double kWarm_C = 75.0, kHot_C = 85.0;
 // Shares of one core that other programs take.
 constexpr double kBusyWarn_percent = 5.0, kBusyBad_percent = 20.0;
+// Share of a run; what the kernel and an idle system need is less.
+constexpr double kContended = 0.1;
 constexpr double kKibPerMib = 1024.0;
 
 std::string text(const Readings& readings, const std::string& name) {
@@ -276,6 +278,20 @@ std::vector<Finding> evaluate(const Readings& readings, std::string_view version
   return findings;
 }
 
+std::optional<double> contended_share(const Readings& before, const Readings& after) {
+  constexpr double kTicksPerSecond = 100.0, kMicrosecondsPerSecond = 1e6;
+  const auto growth = [&](const char* name, double per_second) -> std::optional<double> {
+    const auto from = number(before, name), to = number(after, name);
+    if (!from || !to) return std::nullopt;
+    return (*to - *from) / per_second;
+  };
+  const auto run_s = growth("uptime_s", 1.0);
+  const auto waited_s = growth("cpu_wait_us", kMicrosecondsPerSecond);
+  const auto stolen_s = growth("cpu_stolen_ticks", kTicksPerSecond);
+  if (!run_s || *run_s <= 0.0 || (!waited_s && !stolen_s)) return std::nullopt;
+  return std::max(waited_s.value_or(0.0), stolen_s.value_or(0.0)) / *run_s;
+}
+
 std::vector<RunWarning> run_warnings(const Readings& before, const Readings& after, bool is_board) {
   std::vector<RunWarning> warnings;
   // At either end of the run, or for the first time since the start of the machine.
@@ -295,6 +311,12 @@ std::vector<RunWarning> run_warnings(const Readings& before, const Readings& aft
                      *count_after - *count_before),
          true});
   if (!is_board) return warnings;
+  if (const auto share = contended_share(before, after); share && *share > kContended)
+    warnings.push_back({fmt::format("programs on the target waited for a processor for {:.0f} % of "
+                                    "the run: others run there, or the software has more threads "
+                                    "than processors",
+                                    100.0 * *share),
+                        false});
   if (const Finding governor = check_governor(after); governor.health == Health::kBad)
     warnings.push_back(
         {fmt::format("the target's governor is {}: {}", governor.value, governor.advice), false});

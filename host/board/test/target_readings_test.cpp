@@ -196,6 +196,25 @@ TEST(RunWarnings, NameAProcessorThatWasThrottledDuringTheRun) {
   EXPECT_THAT(pc[0].text, HasSubstr("3 times"));
 }
 
+TEST(RunWarnings, NameAProcessorThatOthersHadDuringTheRun) {
+  const Readings before =
+      healthy_pi({{"uptime_s", "1000.5"}, {"cpu_wait_us", "7000000"}, {"cpu_stolen_ticks", "100"}});
+  const auto after = [](const char* waited_us, const char* stolen_ticks) {
+    return healthy_pi(
+        {{"uptime_s", "1010.50"}, {"cpu_wait_us", waited_us}, {"cpu_stolen_ticks", stolen_ticks}});
+  };
+  EXPECT_NEAR(contended_share(before, after("7900000", "105")).value(), 0.09, 1e-9);
+  EXPECT_THAT(run_warnings(before, after("7900000", "105"), true), IsEmpty());
+  EXPECT_NEAR(contended_share(before, after("7000000", "220")).value(), 0.12, 1e-9);
+  const auto warnings = run_warnings(before, after("9500000", "105"), true);
+  ASSERT_THAT(warnings, SizeIs(1));
+  EXPECT_FALSE(warnings[0].spoils);
+  EXPECT_THAT(warnings[0].text, HasSubstr("25 % of the run"));
+  EXPECT_THAT(run_warnings(before, after("9500000", "105"), false), IsEmpty());
+  EXPECT_FALSE(contended_share(before, before));
+  EXPECT_FALSE(contended_share(healthy_pi({{"uptime_s", "1"}}), healthy_pi({{"uptime_s", "2"}})));
+}
+
 TEST(RunWarnings, IgnoreTheGovernorOfTheHost) {
   const Readings pc = parse_readings(kPc);
   EXPECT_THAT(run_warnings(pc, pc, false), IsEmpty());

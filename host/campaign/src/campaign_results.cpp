@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include <tether/campaign/campaign_results.h>
+#include <tether/campaign/copies.h>
 
 namespace tether::campaign {
 namespace {
@@ -27,8 +28,8 @@ ConditionResults read_condition(const std::filesystem::path& folder,
 
 std::vector<double> ConditionResults::values(std::string_view metric) const {
   std::vector<double> values;
-  for (const TrialResult& trial : trials) {
-    const MetricValue* found = trial.find_metric(metric);
+  for (const TrialResult* trial : distinct_flights(trials)) {
+    const MetricValue* found = trial->find_metric(metric);
     if (found != nullptr && found->value) values.push_back(*found->value);
   }
   return values;

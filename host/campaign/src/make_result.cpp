@@ -9,7 +9,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <tether/base/text_table.h>
 #include <tether/board/target_readings.h>
+#include <tether/campaign/copies.h>
 #include <tether/campaign/result.h>
 
 // A result is assembled from the scenario (what was asked for), the record (what happened) and what
@@ -109,14 +111,17 @@ void drop_metrics_of_missed_tasks(TrialResult& result, const scenario::Scenario&
   }
 }
 
-std::string text_of(double value, const std::string& unit) {
-  return unit == "1" ? fmt::format("{:.6g}", value) : fmt::format("{:.6g} {}", value, unit);
+/// With the digits in which it differs from another value.
+std::string text_of(double value, double other, const std::string& unit) {
+  const std::string number = distinct_text(value, other, 6);
+  return unit == "1" ? number : number + " " + unit;
 }
 
 std::string why_missed(const judge::ClauseVerdict& clause) {
-  const std::string by = clause.margin && *clause.margin < 0.0
-                             ? fmt::format(" by {}", text_of(-*clause.margin, clause.unit))
-                             : "";
+  std::string by;
+  if (clause.margin)
+    by = *clause.margin < 0.0 ? " by " + text_of(-*clause.margin, 0.0, clause.unit)
+                              : ", because its bound was reached";
   return fmt::format("clause \"{}\" is missed{}: {}", clause.name, by, clause.limited_by);
 }
 
@@ -131,9 +136,10 @@ std::string why_missed(const TrialResult& result) {
     if (metric.is_met()) continue;
     if (!metric.value) return fmt::format("no {}: {}", metric.name, metric.missing_because);
     const bool is_less = metric.min && *metric.value < *metric.min;
+    const double limit = is_less ? *metric.min : *metric.max;
     return fmt::format("{} is {}, {} its limit of {}", metric.name,
-                       text_of(*metric.value, metric.unit), is_less ? "below" : "beyond",
-                       text_of(is_less ? *metric.min : *metric.max, metric.unit));
+                       text_of(*metric.value, limit, metric.unit), is_less ? "below" : "beyond",
+                       text_of(limit, *metric.value, metric.unit));
   }
   return "";
 }
@@ -204,6 +210,7 @@ TrialResult make_result(const scenario::Scenario& scenario, const scenario::Cond
   drop_metrics_of_missed_tasks(result, scenario);
   judge_missions(result, scenario, record);
   result.energy = energy_of(record, result.tasks);
+  result.flight_digest = flight_digest(record);
   result.versions = {{"tether", record.header.tether_version},
                      {"simulator", record.header.simulator}};
   for (const record::SutInfo& sut : record.header.suts) {

@@ -1,4 +1,5 @@
 #include "json_reader.h"
+#include "this_run_json.h"
 
 #include <algorithm>
 #include <array>
@@ -19,15 +20,6 @@ namespace {
 constexpr std::string_view kScripted = "scripted";
 constexpr const char* kNotReported = "not reported";
 constexpr std::array<std::string_view, 3> kOutcomes = {"goal_reached", "goal_missed", "failed"};
-
-// Division rounds correctly, so that every nanosecond count prints short and reads back exactly.
-double exact_seconds(Duration d) {
-  return static_cast<double>(d.count()) / 1e9;
-}
-template <class Clock>
-double exact_seconds(std::chrono::time_point<Clock, Duration> t) {
-  return exact_seconds(t.time_since_epoch());
-}
 
 // To JSON.
 
@@ -146,7 +138,8 @@ Json json_of(const Warning& warning) {
               {"file", warning.where.file},
               {"line", warning.where.line},
               {"subject", warning.subject},
-              {"message", warning.message}};
+              {"message", warning.message},
+              {"can_change_verdict", warning.can_change_verdict}};
 }
 
 template <class T>
@@ -177,35 +170,6 @@ Json json_of(const SyncFigures& sync) {
 Json json_of(const std::optional<AuditVerdict>& audit) {
   if (!audit) return nullptr;
   return Json{{"passed", audit->passed}, {"summary", audit->summary}};
-}
-
-Json json_of(const TargetReport& target) {
-  return Json{{"name", target.name},         {"address", target.address},
-              {"before", target.before},     {"after", target.after},
-              {"warnings", target.warnings}, {"is_spoiled", target.is_spoiled}};
-}
-
-Json json_of(const ThisRun& run) {
-  Json json{{"started_at", run.started_at},
-            {"machine", run.machine},
-            {"wall_s", exact_seconds(run.wall)},
-            {"largest_lag_s", exact_seconds(run.largest_lag)},
-            {"attempts", run.attempts}};
-  if (!run.first_failure.empty()) json["first_failure"] = run.first_failure;
-  if (!run.node.empty()) json["node"] = run.node;
-  if (run.target) json["target"] = json_of(*run.target);
-  for (const TargetReport& target : run.more_targets)
-    json["more_targets"].push_back(json_of(target));
-  if (!run.notes.empty()) json["notes"] = run.notes;
-  if (!run.sut_files.empty()) json["sut_files"] = run.sut_files;
-  if (!run.size_arguments.empty()) json["size_arguments"] = run.size_arguments;
-  if (run.simulator)
-    json["simulator"] = Json{{"stepping_s", exact_seconds(run.simulator->stepping)},
-                             {"drawing_s", exact_seconds(run.simulator->drawing)},
-                             {"pictures", run.simulator->pictures},
-                             {"drawn_ahead", run.simulator->drawn_ahead},
-                             {"drawn_in_vain", run.simulator->drawn_in_vain}};
-  return json;
 }
 
 // From JSON.
@@ -314,15 +278,6 @@ UavEnergy read_energy(const JsonReader& json) {
   return energy;
 }
 
-TargetReport read_target(const JsonReader& json) {
-  return {.name = json.text("name"),
-          .address = json.text("address"),
-          .before = json.object("before").all_texts(),
-          .after = json.object("after").all_texts(),
-          .warnings = json.texts("warnings"),
-          .is_spoiled = json.boolean("is_spoiled")};
-}
-
 Warning read_warning(const JsonReader& json) {
   const std::string word = json.text("consequence");
   const auto consequence =
@@ -332,37 +287,10 @@ Warning read_warning(const JsonReader& json) {
   return {*consequence,
           {json.text("file"), static_cast<int>(std::min(json.count("line"), kMostLines))},
           json.text("subject"),
-          json.text("message")};
-}
-
-SimulatorFigures read_simulator(const JsonReader& json) {
-  return {.stepping = json.seconds("stepping_s"),
-          .drawing = json.seconds("drawing_s"),
-          .pictures = json.count("pictures"),
-          .drawn_ahead = json.count("drawn_ahead"),
-          .drawn_in_vain = json.count("drawn_in_vain")};
-}
-
-ThisRun read_this_run(const JsonReader& json) {
-  ThisRun run;
-  run.started_at = json.text("started_at");
-  run.machine = json.text("machine");
-  run.wall = json.seconds("wall_s");
-  run.largest_lag = json.seconds("largest_lag_s");
-  const std::uint64_t attempts = json.count("attempts");
-  if (attempts < 1 || attempts > 1000) json.fail("attempts", "must be 1 to 1000");
-  run.attempts = static_cast<int>(attempts);
-  if (json.has("first_failure")) run.first_failure = json.text("first_failure");
-  if (json.has("node")) run.node = json.text("node");
-  if (json.has("target")) run.target = read_target(json.object("target"));
-  if (json.has("more_targets"))
-    for (const JsonReader& target : json.objects("more_targets"))
-      run.more_targets.push_back(read_target(target));
-  if (json.has("notes")) run.notes = json.texts("notes");
-  if (json.has("sut_files")) run.sut_files = json.texts("sut_files");
-  if (json.has("size_arguments")) run.size_arguments = json.texts("size_arguments");
-  if (json.has("simulator")) run.simulator = read_simulator(json.object("simulator"));
-  return run;
+          json.text("message"),
+          // Results of earlier releases have none.
+          json.has("can_change_verdict") ? json.boolean("can_change_verdict")
+                                         : usually_changes_verdict(*consequence)};
 }
 
 ReplayReport read_replay(const JsonReader& json) {
@@ -394,6 +322,7 @@ void read_trial(const JsonReader& json, TrialResult& result) {
   result.cpu_factor = json.number("cpu_factor");
   if (result.clock == kScripted) result.computing = json.seconds("computing_s");
   result.real_time_factor = json.number("real_time_factor");
+  if (json.has("step_s")) result.step = StepReport{json.seconds("step_s"), json.text("step_from")};
   if (json.has("target")) result.target = json.text("target");
   if (json.has("settings")) result.settings = json.object("settings").all_texts();
   if (json.has("emulator")) result.emulator = read_emulator(json.object("emulator"));
@@ -426,6 +355,9 @@ std::string to_json(const TrialResult& result) {
             {"policy", result.policy},        {"clock", result.clock},
             {"cpu_factor", result.cpu_factor}};
   if (result.clock == kScripted) json["computing_s"] = exact_seconds(result.computing);
+  if (result.step)
+    json.update(
+        Json{{"step_s", exact_seconds(result.step->step)}, {"step_from", result.step->from}});
   if (!result.target.empty()) json["target"] = result.target;
   if (!result.settings.empty()) json["settings"] = result.settings;
   if (!result.emulator.program.empty()) json["emulator"] = json_of(result.emulator);
@@ -441,6 +373,7 @@ std::string to_json(const TrialResult& result) {
                    {"sync", json_of(result.sync)},
                    {"contacts", json_of(result.contacts)},
                    {"audit", json_of(result.audit)}});
+  if (!result.flight_digest.empty()) json["flight_digest"] = result.flight_digest;
   if (!result.tasks.empty()) json["tasks"] = json_of(result.tasks);
   if (!result.clauses.empty()) json["clauses"] = json_of(result.clauses);
   if (!result.energy.empty()) json["energy"] = json_of(result.energy);
@@ -468,6 +401,7 @@ TrialResult result_from_json(const std::string& text, const std::filesystem::pat
       result.energy.push_back(read_energy(energy));
   for (const JsonReader& sut : json.objects("suts")) result.suts.push_back(read_sut(sut));
   result.sync = read_sync(json.object("sync"));
+  if (json.has("flight_digest")) result.flight_digest = json.text("flight_digest");
   if (json.has("contacts"))
     for (const JsonReader& own : json.objects("contacts"))
       result.contacts.push_back(read_contacts(own));

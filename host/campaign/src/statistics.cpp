@@ -3,12 +3,14 @@
 #include <numeric>
 #include <vector>
 
+#include <boost/math/distributions/hypergeometric.hpp>
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 
 #include <tether/campaign/statistics.h>
 
-// Means with Student's and Welch's intervals, and the Mann-Whitney test, exact for small samples.
+// Means with Student's and Welch's intervals, the Mann-Whitney test, exact for small samples, and
+// Fisher's.
 namespace tether::campaign {
 namespace {
 
@@ -150,6 +152,37 @@ RankTest mann_whitney(std::span<const double> a, std::span<const double> b) {
   test.p_two_sided =
       test.exact ? exact_p(ranks, a.size(), doubled_sum) : approximate_p(ranks, test.u, n_a, n_b);
   return test;
+}
+
+double fisher_exact(const Count& a, const Count& b) {
+  if (a.all == 0 || b.all == 0) return 1.0;
+  constexpr double kEqual = 1.0 + 1e-7;  // two splits, but for rounding
+  const std::size_t of_them = a.of_them + b.of_them;
+  const boost::math::hypergeometric splits(static_cast<unsigned>(of_them),
+                                           static_cast<unsigned>(a.all),
+                                           static_cast<unsigned>(a.all + b.all));
+  const double observed = boost::math::pdf(splits, static_cast<unsigned>(a.of_them));
+  const std::size_t least = of_them > b.all ? of_them - b.all : 0;
+  double p = 0.0;
+  for (std::size_t of_a = least; of_a <= std::min(of_them, a.all); ++of_a) {
+    const double likelihood = boost::math::pdf(splits, static_cast<unsigned>(of_a));
+    if (likelihood <= observed * kEqual) p += likelihood;
+  }
+  return std::min(p, 1.0);
+}
+
+std::vector<double> holm(std::span<const double> p_values) {
+  std::vector<std::size_t> order(p_values.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return p_values[i]; });
+  std::vector<double> corrected(p_values.size());
+  double least = 0.0;
+  for (std::size_t rank = 0; rank < order.size(); ++rank) {
+    const double times = static_cast<double>(order.size() - rank);
+    least = std::max(least, std::min(1.0, times * p_values[order[rank]]));
+    corrected[order[rank]] = least;
+  }
+  return corrected;
 }
 
 }  // namespace tether::campaign

@@ -1,5 +1,6 @@
 #include "flight.h"
 
+#include <regex>
 #include <set>
 
 #include <gmock/gmock.h>
@@ -34,6 +35,9 @@ TEST_F(Result, ReadsBackWithEverythingMissing) {
   failed.this_run.attempts = 2;
   failed.this_run.first_failure = "no port either";
   failed.this_run.notes = {"a SUT was stopped", "this machine was suspended"};
+  failed.this_run.doubts = {{Doubt::Kind::kUnseenWait, "uav1", 4.9},
+                            {Doubt::Kind::kBusyMachine, "pi", 0.3}};
+  failed.this_run.loads = {{"pi", 0.3, 0.0}};
   failed.this_run.sut_files = {"flight.csv", "pictures/1.png"};
   failed.this_run.node = "n1";
   failed.this_run.size_arguments = {"face_anchor", "--condition", "target, counted"};
@@ -64,11 +68,12 @@ TEST_F(Result, TextIsTheSameApartFromThisRun) {
 TEST_F(Result, ReadsBackWithEveryOptionalPart) {
   const std::string plain = to_json(trial_);
   for (const char* member :
-       {"\"target\":", "overshoot", "computing_s", "warnings", "\"tasks\"", "\"clauses\"",
-        "emulator", "\"energy\"", "\"margins\"", "\"quantiles\""})
+       {"\"target\":", "\"step_s\"", "overshoot", "computing_s", "warnings", "\"tasks\"",
+        "\"clauses\"", "emulator", "\"energy\"", "\"margins\"", "\"quantiles\""})
     EXPECT_THAT(plain, testing::Not(HasSubstr(member)));
   trial_.clock = "scripted";
   trial_.computing = Duration(2'500'000);
+  trial_.step = StepReport{Duration(4'000'000), "world"};
   trial_.target = "slow_board";
   trial_.emulator = {"qemu-x86_64", "Nehalem", {{"integer", 0.125}, {"load", 0.5}}};
   trial_.profiles = {"rig", "top"};
@@ -92,7 +97,7 @@ TEST_F(Result, ReadsBackWithEveryOptionalPart) {
                     .least_voltage_V = 11.25,
                     .tasks = {{"find", {6, 5, 4, 3, 2, 1}}}}};
   trial_.warnings = {{Consequence::kMissing, {"w.sdf", 7}, "<include> of 'sun'", "is not found"},
-                     {Consequence::kNoEffect, {}, "visual 'v'", "is plain"}};
+                     {Consequence::kNoEffect, {}, "visual 'v'", "is plain", true}};
   trial_.sync.stops = StopFigures{1200, Duration(73'000)};
   trial_.this_run.target =
       TargetReport{.name = "board",
@@ -106,13 +111,22 @@ TEST_F(Result, ReadsBackWithEveryOptionalPart) {
   for (const char* documented :
        {"\"outcome\": \"goal_reached\"", "\"exit_code\": 0", "\"st_at_end_s\": 2.481000001",
         "\"value\": 9.242", "\"steps\": 12", "\"stops\": 1200", "\"largest_overshoot_s\": 7.3e-05",
-        "\"computing_s\": 0.0025", "\"contacts\": \"not reported\"", "\"speed_m_s\": 0.25",
-        "\"consequence\": \"missing\"", "\"margin\": 0.25", "\"deadline_s\": 1.5"})
+        "\"computing_s\": 0.0025", "\"step_s\": 0.004", "\"contacts\": \"not reported\"",
+        "\"speed_m_s\": 0.25", "\"consequence\": \"missing\"", "\"can_change_verdict\": true",
+        "\"margin\": 0.25", "\"deadline_s\": 1.5"})
     EXPECT_THAT(text, HasSubstr(documented));
   const auto begin = text.find("  \"profiles\""), end = text.find("  \"outcome\"");
   EXPECT_THAT(result_from_json(text.substr(0, begin) + text.substr(end), "f").profiles,
               testing::IsEmpty())
       << "of an older version";
+}
+
+TEST_F(Result, DecidesByTheConsequenceWhatAWarningOfAnOlderVersionChanges) {
+  trial_.warnings = {{Consequence::kMissing, {}, "s", "m"}, {Consequence::kNoEffect, {}, "s", "m"}};
+  const std::string text = std::regex_replace(
+      to_json(trial_), std::regex(",\\s*\"can_change_verdict\": (true|false)"), "");
+  EXPECT_THAT(text, testing::Not(HasSubstr("can_change_verdict")));
+  EXPECT_EQ(result_from_json(text, "f").warnings, trial_.warnings);
 }
 
 TEST_F(Result, KeepsTextOfAnyBytesReadable) {
@@ -324,6 +338,9 @@ TEST_F(MakeResult, MissesTheGoalBeyondALimit) {
   EXPECT_EQ(make(record, kReached).outcome, Outcome::kGoalMissed);
   EXPECT_EQ(exit_code(make(record, kReached).outcome), 1);
   EXPECT_EQ(make(record, kReached).reason, "time_required is 31 s, beyond its limit of 30 s");
+  record.interactions[0].message.request_at = ExecTime(seconds(30) + std::chrono::nanoseconds(1));
+  EXPECT_EQ(make(record, kReached).reason,
+            "time_required is 30.000000001 s, beyond its limit of 30 s");
   record.interactions.clear();
   EXPECT_THAT(make(record, kReached).reason, HasSubstr("no time_required: "));
   record = finished_record();

@@ -196,5 +196,21 @@ TEST(MannWhitney, ApproximatesLargeSamples) {
   EXPECT_NEAR(approximate.p_two_sided, exact.p_two_sided, 0.2 * exact.p_two_sided);
 }
 
+// The sums of the probabilities of all splits, computed with whole binomials.
+TEST(FisherExact, SumsTheSplitsThatAreNoMoreLikely) {
+  EXPECT_NEAR(fisher_exact({0, 4}, {4, 4}), 0.02857143, 1e-8);
+  EXPECT_NEAR(fisher_exact({3, 10}, {9, 10}), 0.01976661, 1e-8);
+  EXPECT_NEAR(fisher_exact({1, 12}, {5, 7}), 0.009545924, 1e-8);
+  EXPECT_NEAR(fisher_exact({7, 10}, {7, 10}), 1.0, 1e-8);
+  EXPECT_EQ(fisher_exact({0, 0}, {5, 7}), 1.0);
+  EXPECT_LT(fisher_exact({0, 500}, {500, 500}), 1e-100);
+}
+
+TEST(Holm, MultipliesTheLeastByAllAndKeepsTheOrder) {
+  EXPECT_EQ(holm(std::vector{0.01, 0.04, 0.03}), (std::vector{0.03, 0.06, 0.06}));
+  EXPECT_EQ(holm(std::vector{0.5, 0.9}), (std::vector{1.0, 1.0}));
+  EXPECT_TRUE(holm({}).empty());
+}
+
 }  // namespace
 }  // namespace tether::campaign

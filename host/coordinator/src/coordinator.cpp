@@ -142,7 +142,9 @@ RunReport Coordinator::Impl::run(link::Server& server, const RunHooks& hooks) {
 void Coordinator::Impl::turn() {
   const bool moved = running_ && advance();
   const Duration wait = pace_ ? std::min(kIdleWait, pace_->wait_for(grid().dt())) : kIdleWait;
-  for (const link::Event& event : server_->poll(moved ? Duration(0) : wait)) on_event(event);
+  for (const link::Event& event : server_->poll(moved ? Duration(0) : std::min(wait, until_look())))
+    on_event(event);
+  look_at_suts();
 }
 
 // Called when every SUT has joined. ST and every ET begin at 0.
@@ -157,6 +159,7 @@ void Coordinator::Impl::start() {
   for (Session& session : sessions_) {
     barrier_.add(ExecTime{},
                  session.is_concurrent() ? sync::SutKind::kConcurrent : sync::SutKind::kSerial);
+    computes_from(session, ExecTime{});
     if (session.hello.clock == link::ClockKind::kUnstamped) {
       session.timer.emplace(ExecTime{}, started_);
       unstamped_.push_back(session.uav);
@@ -166,12 +169,17 @@ void Coordinator::Impl::start() {
   }
   stepper_.act();
   log_.race_again();
+  next_look_ = started_;
+  for (Session& session : sessions_) session.computes_since = started_;
   for (const Session& session : sessions_)
-    server_->send(session.peer, link::Welcome{.catalogue = catalogue_of(session),
-                                              .free_running = !is_synchronised(),
-                                              .start = ExecTime{},
-                                              .computing = time_given(session),
-                                              .peers = peers_of(session)});
+    server_->send(
+        session.peer,
+        link::Welcome{.catalogue = catalogue_of(session),
+                      .free_running = !is_synchronised(),
+                      .start = ExecTime{},
+                      .computing = time_given(session),
+                      .peers = peers_of(session),
+                      .real_time_factor = is_synchronised() ? 1.0 : options_.real_time_factor});
 }
 
 uav::Catalogue Coordinator::Impl::catalogue_of(const Session& session) const {
@@ -193,7 +201,6 @@ bool Coordinator::Impl::is_repeatable() const {
 bool Coordinator::Impl::advance() {
   const WallTime now = host_clock_();
   read_timers(now);
-  for (const std::size_t uav : std::exchange(expelled_from_boards_, {})) settle_board(uav);
   release_ready();
   const SimTime target = paced(next_stop(), now);
   if (target <= st()) return false;
@@ -227,7 +234,7 @@ void Coordinator::Impl::read_timers(WallTime now) {
 SimTime Coordinator::Impl::next_stop() const {
   const SimTime bound = is_synchronised() ? barrier_.lower_bound() : SimTime::max();
   return std::min({bound, time_limit_, fallen_at_.value_or(SimTime::max()), stepper_.next_due(),
-                   next_radio(), st() + kStepsPerTurn * grid().dt()});
+                   next_radio(), next_wake(), st() + kStepsPerTurn * grid().dt()});
 }
 
 // How much of that the pace allows.
@@ -290,7 +297,7 @@ void Coordinator::Impl::end_endless(Session& session) {
   if (!is_computing(session) || bound >= limit || computed <= limit - bound) return;
   if (!boards_.shares(session.uav)) return barrier_.progress(session.uav, limit);
   boards_.progress(session.uav, limit - bound);
-  settle_board(session.uav);
+  release_ready();
 }
 
 void Coordinator::Impl::stop_if_asked() {
@@ -337,11 +344,14 @@ RunStatus Coordinator::Impl::status(WallTime now) const {
   for (const Session& session : sessions_)
     if (session.joined()) ++status.joined;
   if (!running_ || !is_synchronised()) return status;
-  for (const Session& session : sessions_)
-    status.et = std::max(status.et.value_or(ExecTime{}), barrier_.bound(session.uav));
-  if (const auto slowest = barrier_.slowest_computing())
-    status.waiting_for =
-        sessions_[boards_.shares(*slowest) ? boards_.awaited(*slowest) : *slowest].uav_name;
+  const Session* slowest = nullptr;
+  for (const Session& session : sessions_) {
+    const ExecTime bound = barrier_.bound(session.uav);
+    status.et = std::max(status.et.value_or(ExecTime{}), bound);
+    if (is_computing(session) && (!slowest || bound < barrier_.bound(slowest->uav)))
+      slowest = &session;
+  }
+  if (slowest) status.waiting_for = slowest->uav_name;
   return status;
 }
 
@@ -369,7 +379,8 @@ RunReport Coordinator::Impl::close_run() {
     report.suts.push_back({.uav = session.uav_name,
                            .sut = session.hello.sut,
                            .finish = session.finish,
-                           .et = running_ ? barrier_.bound(session.uav) : ExecTime{}});
+                           .et = running_ ? barrier_.bound(session.uav) : ExecTime{},
+                           .looks = session.looks});
   }
   if (!running_) return report;
 

@@ -29,8 +29,9 @@ namespace tether::coordinator {
 ///     Watchdog     whether the run takes too long, and who is blocked on whom
 ///     RunLog       what the record has of all this, and in which order
 ///
+/// looks.cpp watches what the threads of SUTs do meanwhile, which nothing else depends on.
 /// A request passes them in this order: it is validated; on a shared board, it waits until its
-/// instant is known (settle_board); it is planned (accept) and held by the barrier; ST advances to
+/// instant is known (settle_boards); it is planned (accept) and held by the barrier; ST advances to
 /// its reply's timestamp; release_ready sends the reply and logs the interaction. A message between
 /// UAVs that arrives meanwhile can move a reply to an earlier instant (promise).
 class Coordinator::Impl {
@@ -64,6 +65,11 @@ class Coordinator::Impl {
   RunReport close_run();
   RunStatus status(WallTime now) const;
 
+  // Looks.
+  Duration until_look() const;
+  bool is_looked_at(const Session& session) const;
+  void look_at_suts();
+
   // Incoming.
   void on_event(const link::Event& event);
   void on_message(link::PeerId peer, const link::Message& message);
@@ -79,7 +85,9 @@ class Coordinator::Impl {
   void break_off(Session& session, link::Refusal::Reason reason, const Fault& fault);
   Standing standing(const Session& session) const;
   static Duration own_work(Session& session, ExecTime stamp);
-  void settle_board(std::size_t uav);
+  bool settle_boards();
+  bool settle_pool(std::size_t pool);
+  ExecTime undisturbed_until(std::size_t pool) const;
   void begin(Session& session, const Arrived& arrived);
   record::Interaction make_entry(const Session& session, const Arrived& arrived) const;
   ExecTime charge(Session& session, const Arrived& arrived, record::Interaction& entry);
@@ -112,9 +120,13 @@ class Coordinator::Impl {
 
   // Outgoing.
   void release_ready();
+  void settle();
   void answer_free_running();
+  std::optional<SimTime> waits_until(const PendingInteraction& pending) const;
+  SimTime next_wake() const;
   void reply(Session& session, std::size_t open_index, SimTime st);
   void leave(Session& session);
+  void computes_from(Session& session, ExecTime at);
   std::optional<uav::CameraSample> image_to_record(Session& session, const link::Request& request,
                                                    const link::Reply& reply) const;
 
@@ -152,10 +164,11 @@ class Coordinator::Impl {
   WallTime started_;      // construction; later, when every SUT had joined
   WallTime flushed_;      // last flush of the record
   Watchdog watchdog_;
+  WallTime next_look_;  // when one is due
+  Duration look_period_ = std::chrono::milliseconds(2);
   std::optional<SimTime> fallen_at_;  // a battery is empty: when the run ends
   std::string fall_;                  // the reason
   std::optional<Ending> expelled_;    // how the run ends once the other SUTs have finished
-  std::vector<std::size_t> expelled_from_boards_;  // SUTs whose share the others have from now on
   std::optional<Ending> ended_;
 };
 

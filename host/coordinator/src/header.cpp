@@ -1,4 +1,5 @@
 #include "coordinator_impl.h"
+#include "header_facts.h"
 
 #include <algorithm>
 #include <cmath>
@@ -84,6 +85,17 @@ double max_acceleration_m_s2(const uav::MultirotorParameters& airframe, double g
   return thrust_N / airframe.mass_kg + std::abs(gravity_m_s2);
 }
 
+/// Of all rotors at full speed, as if each one turned the UAV the same way.
+double max_angular_acceleration_rad_s2(const uav::MultirotorParameters& airframe) {
+  const uav::Vec3& inertia = airframe.inertia_kg_m2;
+  const double least_kg_m2 = std::min({inertia.x, inertia.y, inertia.z});
+  if (!(least_kg_m2 > 0.0)) return 0.0;
+  double arms_m = 0.0;
+  for (const uav::Rotor& rotor : airframe.rotors)
+    arms_m += norm(rotor.p_BR) + airframe.moment_coefficient_m;
+  return arms_m * max_rotor_thrust_N(airframe) / least_kg_m2;
+}
+
 record::ClockInfo describe(const ClockSetting& clock) {
   return {.clock = std::string(link::name(clock.kind)),
           .cpu_factor = clock.cpu_factor,
@@ -102,12 +114,10 @@ record::Header Coordinator::Impl::make_header() const {
   header.real_time_factor = options_.real_time_factor;
   header.wall_at_start = started_;
   header.reports_contacts = simulator_->reports_contacts();
-  if (sessions_.size() > 1) {
-    const bool is_ideal = options_.radio.model == radio::Model::kIdeal;
-    header.radio = {.model = is_ideal ? "ideal" : "log_distance",
-                    .least_delay = radio::least_delay(options_.radio),
-                    .data_rate_bit_s = is_ideal ? 0.0 : options_.radio.data_rate_bit_s};
-  }
+  header.only_uavs_move = only_uavs_move(world());
+  header.moves_by_forces = simulator_->moves_by_forces();
+  header.time_limit = time_limit_.time_since_epoch();
+  if (sessions_.size() > 1) header.radio = describe(options_.radio);
   for (const Session& session : sessions_) {
     const sim::Uav& uav = world().uavs[session.uav];
     header.suts.push_back(
@@ -124,7 +134,10 @@ record::Header Coordinator::Impl::make_header() const {
          .build_id = session.hello.build_id,
          .build = parts_of(session.hello),
          .replay = options_.uavs[session.uav].replayed_from,
-         .computer = options_.uavs[session.uav].computer});
+         .computer = options_.uavs[session.uav].computer,
+         .extent_m = extent_m(uav.body),
+         .max_angular_acceleration_rad_s2 = max_angular_acceleration_rad_s2(uav.airframe),
+         .energy = describe_energy(uav, world().gravity_m_s2)});
     if (boards_.shares(session.uav) || stops_with_others(session.uav)) {
       header.suts.back().board = options_.boards[*options_.uavs[session.uav].board].name;
       header.suts.back().pinned_core = options_.uavs[session.uav].pinned_core;

@@ -127,6 +127,7 @@ void Coordinator::Impl::join(link::PeerId peer, const link::Hello& hello) {
   session.hello = hello;
   session.hello.token.clear();
   session.hello.sut = printable(hello.sut);
+  if (hooks_.on_joined) hooks_.on_joined(session.uav, remote_[peer], hello.process);
   watchdog_.moved(host_clock_());
   if (joined_.size() == sessions_.size()) start();
 }
@@ -141,9 +142,9 @@ void Coordinator::Impl::on_progress(Session& session, const link::Progress& prog
   if (boards_.shares(session.uav)) {
     if (!is_computing(session)) return;
     boards_.progress(session.uav, own_work(session, progress.reached));
-    return settle_board(session.uav);
+  } else {
+    barrier_.progress(session.uav, progress.reached);
   }
-  barrier_.progress(session.uav, progress.reached);
   release_ready();
 }
 
@@ -152,7 +153,7 @@ void Coordinator::Impl::on_annotation(Session& session, const link::Annotation& 
     return break_off(session, link::Refusal::Reason::kBadMessage, *fault);
   if (boards_.shares(session.uav) && is_computing(session)) {
     boards_.add(session.uav, {note, own_work(session, note.at), st(), host_clock_()});
-    return settle_board(session.uav);
+    return release_ready();
   }
   log_.annotation(st(), {session.uav_name, note.at, note.topic, note.json});
 }
@@ -218,10 +219,10 @@ void Coordinator::Impl::on_request(Session& session, const link::Request& reques
   ++session.next_sequence;
   if (boards_.shares(session.uav)) {
     boards_.add(session.uav, {request, own_work(session, request.issued_at), st(), now});
-    return settle_board(session.uav);
+  } else {
+    begin(session, {request, st(), now});
+    stepper_.act();
   }
-  begin(session, {request, st(), now});
-  stepper_.act();
   release_ready();
 }
 
@@ -231,10 +232,23 @@ Duration Coordinator::Impl::own_work(Session& session, ExecTime stamp) {
   return session.own_bound - session.resumed_at;
 }
 
-// Handles the messages whose instant is known now, and tells the barrier how far the board is.
-// After each change of what is known of one of its SUTs.
-void Coordinator::Impl::settle_board(std::size_t uav) {
-  while (const auto sent = boards_.next(uav)) {
+// Handles the messages whose instant is known now, and tells the barrier how far the boards are.
+// Whether anything has changed: another pool may go on then, or a message arrive.
+bool Coordinator::Impl::settle_boards() {
+  bool has_changed = false;
+  for (std::size_t pool = 0; pool < boards_.pools(); ++pool)
+    has_changed = settle_pool(pool) || has_changed;
+  if (has_changed) stepper_.act();
+  return has_changed;
+}
+
+bool Coordinator::Impl::settle_pool(std::size_t pool) {
+  const auto used = [this](std::size_t uav, ExecTime from, ExecTime to, double cores) {
+    stepper_.computes(uav, same_instant(from), same_instant(to), cores);
+  };
+  bool has_changed = false;
+  while (const auto sent = boards_.next(pool, undisturbed_until(pool), used)) {
+    has_changed = true;
     Session& session = sessions_[sent->uav];
     if (const auto* note = std::get_if<link::Annotation>(&sent->what.message)) {
       session.notes.push_back({session.uav_name, sent->at, note->topic, note->json});
@@ -247,10 +261,31 @@ void Coordinator::Impl::settle_board(std::size_t uav) {
     else
       boards_.resume(sent->uav, session.open.back().entry.reply_at);
   }
-  for (const std::size_t other : boards_.sharing(uav))
-    barrier_.progress(other, boards_.bound(other));
-  stepper_.act();
-  release_ready();
+  for (const std::size_t uav : boards_.suts_of(pool)) {
+    const ExecTime before = barrier_.bound(uav);
+    barrier_.progress(uav, boards_.bound(uav));
+    has_changed = has_changed || barrier_.bound(uav) != before;
+  }
+  return has_changed;
+}
+
+// Until when no message from outside can end the wait of a SUT of the pool: when the next one may
+// arrive, or be sent and arrive. What the pool's own SUTs send is known at their stamps, beyond
+// which its time line does not go on before that is handled.
+ExecTime Coordinator::Impl::undisturbed_until(std::size_t pool) const {
+  const auto is_open = [](const PendingInteraction& pending) {
+    return pending.entry.receive_until && !pending.is_promised;
+  };
+  ExecTime until = ExecTime::max();
+  const bool receives = std::ranges::any_of(boards_.suts_of(pool), [&](std::size_t uav) {
+    return std::ranges::any_of(sessions_[uav].open, is_open);
+  });
+  if (!receives) return until;
+  if (const auto next = next_arrival()) until = next->at;
+  for (const Session& other : sessions_)
+    if (!other.left && !boards_.is_in(pool, other.uav))
+      until = std::min(until, barrier_.bound(other.uav) + radio::least_delay(options_.radio));
+  return until;
 }
 
 // The SUT does what it did when its time was recorded. Its timestamp follows from the time given.
@@ -282,10 +317,7 @@ void Coordinator::Impl::begin(Session& session, const Arrived& arrived) {
   PendingInteraction pending{.request = arrived.request, .entry = make_entry(session, arrived)};
   record::Interaction& entry = pending.entry;
   entry.request_at = charge(session, arrived, entry);
-  // What the threads of a concurrent SUT compute while others wait is not known.
-  if (!session.is_concurrent())
-    stepper_.computed(session.uav, same_instant(entry.request_at),
-                      entry.computed.value_or(entry.request_at - session.resumed_at));
+  stepper_.ends_computing(session.uav, same_instant(entry.request_at));
   session.calls_in_step = st() > session.called_at ? 1 : session.calls_in_step + 1;
   session.called_at = st();
   entry.reply_at = accept(session, pending);
@@ -389,6 +421,8 @@ ExecTime Coordinator::Impl::accept_command(Session& session, PendingInteraction&
   const SimTime effect = same_instant(pending.entry.request_at) + session.command_latency;
   pending.entry.effect_at =
       stepper_.command(session.uav, pending.entry.sequence, set.command, effect);
+  const auto& [velocity, yaw_rate] = set.command;
+  pending.entry.command = {velocity.x, velocity.y, velocity.z, yaw_rate};
   pending.entry.grid_error = *pending.entry.effect_at - effect;
   return pending.entry.request_at;
 }

@@ -8,7 +8,7 @@
 namespace tether::coordinator {
 
 void Coordinator::Impl::release_ready() {
-  settle_radio();
+  settle();
   if (!is_synchronised()) return answer_free_running();
   // Other threads draw ahead: while one picture is drawn for its reply, those of other SUTs, and
   // while the SUTs compute, what they will read.
@@ -18,21 +18,43 @@ void Coordinator::Impl::release_ready() {
     std::size_t i = 0;
     while (session.open[i].entry.sequence != grant->call) ++i;
     reply(session, i, grant->released_at);
-    settle_radio();
+    settle();
   }
   stepper_.announce();
 }
 
-// In free running, only reads that wait for the next measurement of their sensor are not answered
-// at once.
+// A message can end the wait of a program that shares a board, and so change when others have done
+// their work; and what these send is known only then.
+void Coordinator::Impl::settle() {
+  do settle_radio();
+  while (settle_boards());
+}
+
+// In free running: when a sleep or a receive ends, unless a message has arrived.
+std::optional<SimTime> Coordinator::Impl::waits_until(const PendingInteraction& pending) const {
+  const record::Interaction& entry = pending.entry;
+  if (pending.is_promised || !(entry.receive_until || entry.sleep_until)) return std::nullopt;
+  return grid().ceil(same_instant(entry.receive_until ? *entry.receive_until : *entry.sleep_until));
+}
+
+// In free running, how far ST may advance before one of these ends.
+SimTime Coordinator::Impl::next_wake() const {
+  SimTime due = SimTime::max();
+  if (is_synchronised()) return due;
+  for (const Session& session : sessions_)
+    for (const PendingInteraction& pending : session.open)
+      due = std::min(due, waits_until(pending).value_or(due));
+  return due;
+}
+
+// In free running, only what waits in ST is not answered at once: sleeps, receives, and reads that
+// wait for the next measurement of their sensor.
 void Coordinator::Impl::answer_free_running() {
   for (Session& session : sessions_) {
     for (std::size_t i = 0; i < session.open.size();) {
       PendingInteraction& pending = session.open[i];
       const Sampler::Read* read = stepper_.sampler(session.uav).find(pending.entry.sequence);
-      const bool waits = pending.entry.receive_until && !pending.is_promised &&
-                         *pending.entry.receive_until > same_instant(st());
-      if (waits || (read && !read->state)) {
+      if (waits_until(pending) > st() || (read && !read->state)) {
         ++i;
         continue;
       }
@@ -65,7 +87,8 @@ void Coordinator::Impl::reply(Session& session, std::size_t open_index, SimTime 
   session.last_hold = entry.wall_at_release - entry.wall_at_arrival;
   watchdog_.heard(session.uav, entry.wall_at_release);
   watchdog_.moved(entry.wall_at_release);
-  session.resumed_at = session.own_bound = entry.reply_at;
+  computes_from(session, entry.reply_at);
+  session.computes_since = entry.wall_at_release;
   if (session.timer) session.timer->resume(entry.wall_at_release, entry.reply_at);
   // A CPU clock adds what child processes computed during the call.
   if (session.plausibility)
@@ -93,11 +116,20 @@ std::optional<uav::CameraSample> Coordinator::Impl::image_to_record(
   return *image;
 }
 
+// What the threads of a concurrent SUT compute while others wait is not known; what a SUT on a
+// shared board computes, its board's time line knows.
+void Coordinator::Impl::computes_from(Session& session, ExecTime at) {
+  session.resumed_at = session.own_bound = at;
+  if (!session.is_concurrent() && !boards_.shares(session.uav))
+    stepper_.begins_computing(session.uav, same_instant(at));
+}
+
 // Drops the other open calls of a concurrent SUT.
 void Coordinator::Impl::leave(Session& session) {
   session.left = true;
   session.open.clear();
   stepper_.close(session.uav);
+  stepper_.ends_computing(session.uav, st());
   barrier_.remove(session.uav);
   server_->close(session.peer);
   if (std::all_of(sessions_.begin(), sessions_.end(), [](const Session& s) { return s.left; }))

@@ -60,14 +60,8 @@ std::optional<sync::SutTime> Coordinator::Impl::next_arrival() const {
 
 // How far ST may advance before something is due here.
 SimTime Coordinator::Impl::next_radio() const {
-  SimTime due = SimTime::max();
-  if (const auto next = medium_.next()) due = std::max(grid().floor(next->at), st());
-  if (is_synchronised()) return due;
-  for (const Session& session : sessions_)
-    for (const PendingInteraction& pending : session.open)
-      if (pending.entry.receive_until)
-        due = std::min(due, grid().ceil(same_instant(*pending.entry.receive_until)));
-  return due;
+  const auto next = medium_.next();
+  return next ? std::max(grid().floor(next->at), st()) : SimTime::max();
 }
 
 void Coordinator::Impl::settle_radio() {
@@ -107,6 +101,7 @@ void Coordinator::Impl::promise(Session& session, PendingInteraction& pending, E
   if (reply_at == entry.reply_at) return;
   entry.reply_at = reply_at;
   barrier_.move_up(session.uav, entry.sequence, reply_at);
+  if (boards_.shares(session.uav)) boards_.resume(session.uav, reply_at);
   if (!session.is_concurrent()) return;
   session.newest_moved_due = pending.moved_due = ++session.dues_sent;
   server_->send(session.peer, link::Due{entry.sequence, reply_at});
@@ -145,15 +140,16 @@ void Coordinator::Impl::expel(Session& session, const Fault& fault) {
                  fmt::format("the SUT of UAV \"{}\" sent {}", session.uav_name, fault.what)};
   log_.footer().expelled.push_back(session.uav_name);
   leave(session);
-  if (!boards_.shares(session.uav)) return;
-  boards_.leave(session.uav);
-  expelled_from_boards_.push_back(session.uav);
+  if (boards_.shares(session.uav)) boards_.leave(session.uav);
 }
 
 // --- the record ---------------------------------------------------------------------------------
 
+// A SUT may have sent a message at an ET that ST has not reached when the run ends early: such a
+// message, like the call that sent it, has not happened.
 void Coordinator::Impl::log_in_transit() {
-  for (const radio::Arrival& arrival : medium_.in_transit(st())) log_arrival(arrival);
+  for (const radio::Arrival& arrival : medium_.in_transit(st()))
+    if (grid().floor(arrival.message.sent_at) <= st()) log_arrival(arrival);
 }
 
 void Coordinator::Impl::log_arrival(const radio::Arrival& arrival) {

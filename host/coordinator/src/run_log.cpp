@@ -187,6 +187,8 @@ bool RunLog::may_precede(const Collected& later, const Collected& earlier) {
     return reply->reply_at <= same_instant(later.st);
   const auto* other = std::get_if<record::Interaction>(&later.message);
   if (!other) return true;
+  // Its message may have arrived after the other one had been let go.
+  if (other->received) return true;
   // On a shared board, a request comes before its instant is known.
   const bool was_held = !other->computed && (other->st_at_arrival < later.st ||
                                              other->wall_at_arrival < reply->wall_at_release);

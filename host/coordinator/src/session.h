@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include <tether/coordinator/coordinator.h>
 #include <tether/link/messages.h>
 #include <tether/link/server.h>
 #include <tether/radio/medium.h>
@@ -68,6 +69,10 @@ struct Session {
   std::size_t full_queues = 0;  ///< messages without room, beyond nine for each that was sent
   std::uint64_t dues_sent = 0;
   std::uint64_t newest_moved_due = 0;  ///< number of the last Due that was earlier than announced
+
+  WallTime computes_since{};  ///< its last reply was sent
+  bool is_hidden = false;     ///< RunHooks::threads_of does not know it
+  SutLooks looks;
 
   std::optional<ExecTime> stopped_at;  ///< ET of the last stop in the record
   ExecTime resumed_at{};               ///< ET of its last reply, from which on it computes

@@ -30,15 +30,17 @@ SharedBoards::SharedBoards(const RunOptions& options) : seats_(options.uavs.size
     }
     const int rest = options.boards[board].cores - static_cast<int>(pinned.size());
     require(free.empty() || rest > 0, "every core has pinned programs");
-    seat(options, free, rest);
-    for (const auto& [core, uavs] : pinned) seat(options, uavs, 1);
+    const bool waits_for_cores =
+        free.size() > static_cast<std::size_t>(rest) ||
+        std::ranges::any_of(pinned, [](const auto& core) { return core.second.size() > 1; });
+    if (!waits_for_cores) continue;
+    if (!free.empty()) seat(options, std::move(free), rest);
+    for (auto& [core, uavs] : pinned) seat(options, std::move(uavs), 1);
   }
 }
 
-void SharedBoards::seat(const RunOptions& options, const std::vector<std::size_t>& uavs,
-                        int cores) {
+void SharedBoards::seat(const RunOptions& options, std::vector<std::size_t> uavs, int cores) {
   require(uavs.size() <= sync::SharedCores::kMostPrograms, "too many programs on a board");
-  if (uavs.size() <= static_cast<std::size_t>(std::max(cores, 1))) return;
   for (std::size_t i = 0; i < uavs.size(); ++i) {
     const auto& clock = options.uavs[uavs[i]].clock;
     require(clock.has_value(), "the clock on a shared board is needed");
@@ -46,7 +48,8 @@ void SharedBoards::seat(const RunOptions& options, const std::vector<std::size_t
                        .program = i,
                        .sends_progress = clock->kind == link::ClockKind::kCpu};
   }
-  pools_.push_back({sync::SharedCores(cores, uavs.size()), uavs});
+  sync::SharedCores shared(cores, uavs.size());
+  pools_.push_back({std::move(shared), std::move(uavs)});
 }
 
 bool SharedBoards::has_request(std::size_t uav) const {
@@ -90,17 +93,12 @@ ExecTime SharedBoards::bound(std::size_t uav) const {
   return pools_[at(uav).pool].cores.bound(at(uav).program);
 }
 
-std::size_t SharedBoards::awaited(std::size_t uav) const {
-  if (!has_request(uav)) return uav;
-  std::size_t awaited = uav;
-  for (const std::size_t other : pools_[at(uav).pool].uavs)
-    if (!has_request(other) && (awaited == uav || bound(other) < bound(awaited))) awaited = other;
-  return awaited;
-}
-
-std::optional<SharedBoards::Sent> SharedBoards::next(std::size_t uav) {
-  Pool& pool = pools_[at(uav).pool];
-  const auto stamp = pool.cores.next();
+std::optional<SharedBoards::Sent> SharedBoards::next(std::size_t index, ExecTime until,
+                                                     const Used& used) {
+  Pool& pool = pools_[index];
+  const auto stamp = pool.cores.next(until, [&](const sync::SharedCores::Use& use) {
+    used(pool.uavs[use.program], use.from, use.to, use.cores);
+  });
   if (!stamp) return std::nullopt;
   const std::size_t sender = pool.uavs[stamp->program];
   Seat& seat = *seats_[sender];

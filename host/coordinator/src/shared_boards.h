@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <deque>
+#include <functional>
 #include <optional>
 #include <variant>
 #include <vector>
@@ -21,14 +22,22 @@ struct Stamped {
 };
 
 /// The SUTs whose programs share the cores of a board, and their messages until it is known when,
-/// on the board's time line, they were sent. Programs that have all cores that they can use to
-/// themselves are not in here: their own time is the board's.
+/// on the board's time line, they were sent. If no program of a board ever waits for a core, its
+/// programs are not in here: their own time is the board's.
+///
+/// A *pool* is the cores of a board that the same programs use: those that are pinned to one core,
+/// or all others.
 class SharedBoards {
  public:
   /// @throws Error(kInternal) if the boards of the options are not as documented.
   explicit SharedBoards(const RunOptions& options);
 
   bool shares(std::size_t uav) const { return seats_[uav].has_value(); }
+  std::size_t pools() const { return pools_.size(); }
+  const std::vector<std::size_t>& suts_of(std::size_t pool) const { return pools_[pool].uavs; }
+  bool is_in(std::size_t pool, std::size_t uav) const {
+    return shares(uav) && at(uav).pool == pool;
+  }
   /// Its request has arrived, and its instant is not known yet.
   bool has_request(std::size_t uav) const;
   bool has_finish(std::size_t uav) const;
@@ -37,13 +46,12 @@ class SharedBoards {
   /// @{
   void progress(std::size_t uav, Duration work);
   void add(std::size_t uav, Stamped message);
-  /// It waits until `when`, or computes no more. After the request that `next` returned.
+  /// It waits until `when`, or computes no more. After the request that `next` returned, or if a
+  /// message ends its wait already at `when`.
   void resume(std::size_t uav, ExecTime when);
   void leave(std::size_t uav);
   /// Lower bound on the instants of its messages to come.
   ExecTime bound(std::size_t uav) const;
-  /// Whose work has to be known for the next instant of its board: its own, or that of another.
-  std::size_t awaited(std::size_t uav) const;
   /// @}
 
   struct Sent {
@@ -51,13 +59,11 @@ class SharedBoards {
     ExecTime at;
     Stamped what;
   };
-  /// The next message whose instant is known of the SUTs that share cores with this one.
-  /// @pre it shares a board, also below.
-  std::optional<Sent> next(std::size_t uav);
-  /// The SUTs that share cores with this one, and itself.
-  const std::vector<std::size_t>& sharing(std::size_t uav) const {
-    return pools_[at(uav).pool].uavs;
-  }
+  /// UAV, from, until, and on how much of a core its SUT computes.
+  using Used = std::function<void(std::size_t uav, ExecTime from, ExecTime to, double cores)>;
+  /// The next message of the SUTs of a pool, if its instant is known, and not after `until`; up to
+  /// there, it can depend on nothing but their work.
+  std::optional<Sent> next(std::size_t pool, ExecTime until, const Used& used);
 
  private:
   struct Pool {
@@ -73,7 +79,7 @@ class SharedBoards {
     bool has_asked = false;  // for the first one
   };
 
-  void seat(const RunOptions& options, const std::vector<std::size_t>& uavs, int cores);
+  void seat(const RunOptions& options, std::vector<std::size_t> uavs, int cores);
   void ask(std::size_t uav);
   const Seat& at(std::size_t uav) const { return *seats_[uav]; }
 

@@ -29,7 +29,8 @@ Stepper::Stepper(sim::Simulator& simulator, const sync::BarrierSynchronizer& bar
       ground_truth_period_(ground_truth_period),
       samplers_(std::move(samplers)),
       has_changed_(samplers_.size()),
-      has_battery_(samplers_.size()) {
+      has_battery_(samplers_.size()),
+      loads_(samplers_.size()) {
   for (std::size_t uav = 0; uav < samplers_.size(); ++uav) {
     due_.add();
     note_change(uav);
@@ -49,11 +50,13 @@ SimTime Stepper::next_ground_truth() const {
 SimTime Stepper::next_due() const {
   SimTime due =
       std::min({commands_.next_effect(), next_ground_truth(), same_instant(due_.least())});
-  if (!computed_.empty()) due = std::min(due, computed_.begin()->first);
+  for (std::size_t uav = 0; uav < loads_.size(); ++uav)
+    if (has_battery_[uav]) due = std::min(due, loads_[uav].next_change(st_, grid_));
   return due;
 }
 
 void Stepper::advance_to(SimTime to) {
+  load_batteries(to);
   guarded([&](sim::Simulator& s) { s.advance_to(to); });
   st_ = to;
   log_->settle();
@@ -63,22 +66,29 @@ void Stepper::advance_to(SimTime to) {
 
 // Samples come first, so that they do not depend on commands that take effect at this boundary.
 void Stepper::act() {
-  charge_batteries();
   sample();
   apply_commands();
   log_ground_truth();
 }
 
-void Stepper::computed(std::size_t uav, SimTime t, Duration busy) {
-  if (!has_battery_[uav] || busy <= Duration(0)) return;
-  computed_.insert({grid_.floor(t) + grid_.dt(), {uav, busy}});
+void Stepper::computes(std::size_t uav, SimTime from, SimTime to, double cores) {
+  if (has_battery_[uav]) loads_[uav].add(from, to, cores);
 }
 
-void Stepper::charge_batteries() {
-  while (!computed_.empty() && computed_.begin()->first <= st_) {
-    const Computed computed = computed_.begin()->second;
-    guarded([&](sim::Simulator& s) { s.computed(computed.uav, computed.busy); });
-    computed_.erase(computed_.begin());
+void Stepper::begins_computing(std::size_t uav, SimTime at) {
+  if (has_battery_[uav]) loads_[uav].begin(at);
+}
+
+void Stepper::ends_computing(std::size_t uav, SimTime at) {
+  if (has_battery_[uav]) loads_[uav].end(at);
+}
+
+// ST does not pass the bound of a SUT that computes, so its load is known up to there.
+void Stepper::load_batteries(SimTime to) {
+  for (std::size_t uav = 0; uav < loads_.size(); ++uav) {
+    if (!has_battery_[uav]) continue;
+    const double cores = loads_[uav].mean_cores(st_, to);
+    guarded([&](sim::Simulator& s) { s.computing(uav, cores); });
   }
 }
 

@@ -1,12 +1,12 @@
 #pragma once
 
 #include "command_queue.h"
+#include "computer_load.h"
 #include "run_log.h"
 #include "sensors/sampler.h"
 
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <stdexcept>
 #include <vector>
@@ -51,10 +51,12 @@ class Stepper {
   /// Queues a command for the first boundary at or after `t`; returns that boundary.
   SimTime command(std::size_t uav, std::uint64_t sequence, const uav::VelocityCommand& command,
                   SimTime t);
-  /// The UAV's computer computed for `busy` until `t`. Its battery is charged from the first
-  /// boundary after `t` on: none that ST may already have reached. Without a battery, nothing
-  /// happens.
-  void computed(std::size_t uav, SimTime t, Duration busy);
+  /// What the UAV's computer computes, for its battery: on so much of a core in that time; or on
+  /// one core, from a reply until the next request. Known before ST has passed it. Without a
+  /// battery, nothing happens.
+  void computes(std::size_t uav, SimTime from, SimTime to, double cores);
+  void begins_computing(std::size_t uav, SimTime at);
+  void ends_computing(std::size_t uav, SimTime at);
   /// When a battery was exhausted, if one was: of which UAV.
   struct Exhausted {
     std::size_t uav = 0;
@@ -82,7 +84,7 @@ class Stepper {
 
  private:
   void note_change(std::size_t uav);
-  void charge_batteries();
+  void load_batteries(SimTime to);
   void sample();
   void apply_commands();
   void log_ground_truth();
@@ -109,12 +111,8 @@ class Stepper {
   std::vector<std::size_t> changed_;  // samplers that may have something to announce
   std::vector<bool> has_changed_;     // by UAV
   CommandQueue commands_;
-  struct Computed {
-    std::size_t uav = 0;
-    Duration busy{0};
-  };
-  std::multimap<SimTime, Computed> computed_;  // by when it is charged
-  std::vector<bool> has_battery_;              // by UAV; all false: energy is not simulated
+  std::vector<bool> has_battery_;    // by UAV; all false: energy is not simulated
+  std::vector<ComputerLoad> loads_;  // by UAV
   SimTime st_{};
   std::int64_t ground_truths_ = 0;  // instants logged so far
 };

@@ -86,10 +86,8 @@ MaybeFault body_fault(const link::SetVelocity& set, const Standing& sut) {
   return std::nullopt;
 }
 
-MaybeFault body_fault(const link::Sleep& sleep, const Standing& sut) {
+MaybeFault body_fault(const link::Sleep& sleep, const Standing&) {
   if (!is_stamp(sleep.until)) return Fault{Kind::kStamp, "a sleep until a time out of range"};
-  if (!sut.synchronised)
-    return Fault{Kind::kNotAvailable, "a sleep, which is not allowed in free-running mode"};
   return std::nullopt;
 }
 

@@ -49,7 +49,6 @@ TEST_F(CoordinatorBattery, EndsTheRunSomeTimeAfterABatteryWasEmpty) {
   EXPECT_LT(report.st, st_ms(3000));
 }
 
-// What it computes until its call is drawn after it.
 TEST_F(CoordinatorBattery, ReadsTheBatteryAtTheBoundaryOfTheReply) {
   make(world_with_battery(0.5));
   run({{std::chrono::microseconds(20'400), link::ReadBattery{}}, finish(milliseconds(20))});
@@ -68,6 +67,51 @@ TEST_F(CoordinatorBattery, ReadsTheBatteryAtTheBoundaryOfTheReply) {
   EXPECT_EQ(*reply.battery,
             (uav::BatterySample{st_ms(20), logged->voltage_V, logged->current_A, logged->charge}));
   EXPECT_LT(logged->charge, 0.5);
+  EXPECT_NEAR(logged->computing_J, 0.02 * 10.0, 1e-9) << "what it computed until ST 20 ms";
+}
+
+TEST_F(CoordinatorBattery, ChargesWhatIsComputedWhileItIsComputedUpToTheEnd) {
+  make(world_with_battery(1.0));
+  run({sleep(milliseconds(20), milliseconds(100)), finish(milliseconds(80))});
+  const auto computed_J = [&](std::int64_t ms) {
+    return std::ranges::find(recorder_.batteries, st_ms(ms), &record::Battery::at)->computing_J;
+  };
+  EXPECT_NEAR(computed_J(10), 0.1, 1e-9);
+  EXPECT_NEAR(computed_J(120), 0.2, 1e-9);
+  EXPECT_NEAR(computed_J(200), 1.0, 1e-9) << "before `finish`, too";
+}
+
+TEST_F(CoordinatorBattery, ChargesWhatIsComputedUntilTheTimeLimit) {
+  options_.time_limit = milliseconds(100);
+  make(world_with_battery(1.0));
+  EXPECT_EQ(run({sleep(milliseconds(20), milliseconds(10)), finish(milliseconds(500))}).end,
+            RunEnd::kTimeLimit);
+  EXPECT_EQ(recorder_.batteries.back().at, st_ms(100));
+  EXPECT_NEAR(recorder_.batteries.back().computing_J, 0.09 * 10.0, 1e-9);
+}
+
+TEST_F(CoordinatorBattery, ChargesEachUavOfASharedBoardForItsShareOfTheCores) {
+  sim::World world = world_with_battery(1.0);
+  world.uavs.push_back(world.uavs[0]);
+  world.uavs[1].name = "other";
+  options_.boards = {{"obc", 1}};
+  make(world);
+  for (UavOptions& uav : options_.uavs) {
+    uav.board = 0;
+    uav.clock = ClockSetting{.kind = link::ClockKind::kScripted};
+  }
+  coordinator_ = std::make_unique<Coordinator>(*simulator_, recorder_, options_,
+                                               [this] { return now_ += tick_; });
+  server_->add_sut(hello(world.uavs[0].name), {finish(milliseconds(30))});
+  server_->add_sut(hello("other"), {finish(milliseconds(60))});
+  ASSERT_EQ(run().end, RunEnd::kFinished);
+  for (const record::Battery& battery : recorder_.batteries) {
+    const double s = to_seconds(battery.at);
+    const bool is_first = battery.uav == world.uavs[0].name;
+    EXPECT_NEAR(battery.computing_J,
+                10.0 * (is_first ? std::min(s, 0.06) / 2 : std::max(s / 2, s - 0.03)), 1e-9)
+        << s;
+  }
 }
 
 TEST_F(CoordinatorBattery, RefusesToReadABatteryThatIsNotThere) {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -53,6 +54,12 @@ inline Act turn(Duration compute, double yaw_rate_rad_s) {
 }
 inline Act sleep(Duration compute, Duration duration) {
   return {compute, duration};
+}
+inline Act send(Duration compute, std::string to = "", std::size_t bytes = 10) {
+  return {compute, link::SendMessage{std::move(to), std::vector<std::uint8_t>(bytes, 7)}};
+}
+inline Act receive(Duration compute, Duration timeout) {
+  return {compute, link::ReceiveMessage{timeout}};
 }
 inline Act finish(Duration compute) {
   return {compute, link::Finish{true, "done", "{}"}};

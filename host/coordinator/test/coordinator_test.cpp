@@ -207,32 +207,6 @@ TEST_F(CoordinatorTest, MeasuresTheTimeOfAnUnstampedClient) {
   EXPECT_EQ(sut.required_clock, (record::ClockInfo{"unstamped"}));
 }
 
-TEST_F(CoordinatorTest, FreeRunningRepliesAtOnceAndChargesNothing) {
-  set_free_running(0.25);
-  const RunReport report =
-      run({read(seconds(5), kRange), read(seconds(5), kCamera), finish(seconds(5))});
-  EXPECT_EQ(report.end, RunEnd::kFinished);
-  EXPECT_LT(report.st, st_ms(100));
-  for (const record::Interaction& entry : recorder_.interactions) {
-    EXPECT_EQ(same_instant(entry.request_at), entry.st_at_arrival);
-    EXPECT_EQ(entry.reply_at, entry.request_at);
-    EXPECT_EQ(entry.st_at_release, entry.st_at_arrival);
-  }
-  EXPECT_TRUE(simulator_->expected().empty());
-  EXPECT_TRUE(std::get<link::Welcome>(server_->sent.at(1).front()).free_running);
-}
-
-TEST_F(CoordinatorTest, FreeRunningFollowsTheWallClockWithAnyStep) {
-  set_free_running(0.5);
-  options_.time_limit = seconds(1);
-  for (const Duration step : {milliseconds(1), milliseconds(80)}) {
-    make(1, step);
-    const RunReport report = run({});
-    EXPECT_EQ(report.end, RunEnd::kTimeLimit);
-    EXPECT_NEAR(to_seconds(report.wall), 2.0, 0.2);
-  }
-}
-
 // ---- Failures: each ends the run with its cause, and keeps the record up to there.
 
 TEST_F(CoordinatorTest, EndsAtTheTimeLimit) {

@@ -21,13 +21,6 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-Act send(Duration compute, std::string to = "", std::size_t bytes = 10) {
-  return {compute, link::SendMessage{std::move(to), std::vector<std::uint8_t>(bytes, 7)}};
-}
-Act receive(Duration compute, Duration timeout) {
-  return {compute, link::ReceiveMessage{timeout}};
-}
-
 class RadioTest : public CoordinatorTest {
  protected:
   // "uav1", "uav2", …
@@ -111,6 +104,23 @@ TEST_F(RadioTest, TheRecordHasEachMessageAtEachReceiver) {
   EXPECT_EQ(entry.at, *entry.began_at + radio::air_time(options_.radio, 10));
   EXPECT_TRUE(entry.distance_m && entry.walls && entry.snr_db);
   EXPECT_EQ(recorder_.header.radio.model, "log_distance");
+}
+
+TEST_F(RadioTest, WhatIsSentAfterTheEndIsNotInTheRecord) {
+  for (const bool is_in_step : {true, false}) {
+    make(2);
+    server_->add_sut(hello(name_of(0)), {send(microseconds(is_in_step ? 300 : 5'300))});
+    const link::PeerId lost = add_silent(false, name_of(1));
+    hooks_.should_stop = [&, polls = 0]() mutable -> std::optional<Ending> {
+      if (++polls == 5) server_->disconnect(lost);
+      return std::nullopt;
+    };
+    EXPECT_EQ(run().end, RunEnd::kSutLost);
+    EXPECT_EQ(recorder_.footer->st_at_end, st_ms(0));
+    ASSERT_EQ(recorder_.radio.size(), is_in_step ? 1u : 0u) << "ST is 0 ms at the end";
+    for (const record::RadioMessage& message : recorder_.radio)
+      EXPECT_EQ(message.at, same_instant(us(300))) << "not before it was sent";
+  }
 }
 
 TEST_F(RadioTest, WhatIsStillInTransitAtTheEndIsInTheRecord) {

@@ -66,7 +66,31 @@ TEST_F(SharedBoard, PinnedProgramsShareTheirCoreOnly) {
   ASSERT_EQ(run().end, RunEnd::kFinished);
   EXPECT_EQ(of(2)[0].request_at, us(6000));
   EXPECT_EQ(of(3)[0].request_at, us(2000));
-  EXPECT_EQ(of(3)[0].computed, std::nullopt) << "it shares nothing";
+  EXPECT_EQ(of(3)[0].computed, milliseconds(2));
+}
+
+TEST_F(SharedBoard, TheRecordHasTheBoardOfAProgramThatIsAloneOnItsCore) {
+  make_shared(3, 2);
+  options_.uavs[1].pinned_core = 0;
+  remake();
+  for (std::size_t uav = 0; uav < 3; ++uav)
+    server_->add_sut(hello(name(uav)), {finish(milliseconds(2))});
+  ASSERT_EQ(run().end, RunEnd::kFinished);
+  EXPECT_EQ(of(0)[0].request_at, us(4000));
+  EXPECT_EQ(of(1)[0].request_at, us(2000));
+  EXPECT_EQ(recorder_.header.suts[1].board, "obc");
+  EXPECT_EQ(recorder_.header.suts[1].pinned_core, 0);
+}
+
+TEST_F(SharedBoard, ABoardOnWhichNobodyWaitsIsNotInTheRecord) {
+  make_shared(2, 2);
+  options_.uavs[1].pinned_core = 1;
+  remake();
+  for (std::size_t uav = 0; uav < 2; ++uav)
+    server_->add_sut(hello(name(uav)), {finish(milliseconds(2))});
+  ASSERT_EQ(run().end, RunEnd::kFinished);
+  EXPECT_EQ(recorder_.header.boards.size(), 0u);
+  EXPECT_EQ(of(0)[0].computed, std::nullopt);
 }
 
 TEST_F(SharedBoard, AFlooderLeavesItsShareOfTheCoresToTheOthers) {

@@ -29,15 +29,13 @@ void Meter::step(SimTime from, Duration dt, const uav::BodyState& body,
                  const uav::MultirotorState& rotors) {
   if (status_.empty_at) return;
   const double rotors_W = propulsion_power_W(*airframe_, model_->propulsion, rotors, body);
-  const Duration busy = std::min(pending_, dt);
-  pending_ -= busy;
   const double dt_s = to_seconds(dt);
   std::array<double, kCauses> power_W{};
   const auto of = [&](Cause cause) -> double& { return power_W[static_cast<std::size_t>(cause)]; };
   of(Cause::kLift) = hover_W_;
   of(Cause::kMoving) = rotors_W - hover_W_;
   of(Cause::kIdle) = model_->computer.idle_W;
-  of(Cause::kComputing) = model_->computer.busy_core_W * to_seconds(busy) / dt_s;
+  of(Cause::kComputing) = model_->computer.busy_core_W * busy_cores_;
   of(Cause::kSensors) = model_->sensors_W;
   double asked_W = 0.0;
   for (const double power : power_W) asked_W += power;

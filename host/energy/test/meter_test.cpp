@@ -26,8 +26,12 @@ void hover(Meter& meter, Duration time) {
 TEST(Meter, ChargesEachCauseForItsPower) {
   const Model model = hummingbird_model();
   Meter meter(model, kAirframe, kGravity_m_s2);
-  meter.computed(400ms);
-  hover(meter, 1s);
+  meter.computing(2.0);
+  hover(meter, 150ms);
+  meter.computing(0.5);
+  hover(meter, 200ms);
+  meter.computing(0.0);
+  hover(meter, 650ms);
   const Status& status = meter.status();
   EXPECT_NEAR(of(status, Cause::kLift),
               level_flight_power_W(kAirframe, model.propulsion, kGravity_m_s2, 0.0), 1e-6);
@@ -77,7 +81,7 @@ struct Flight {
         body.v_WB = {any(8.0), any(8.0), any(4.0)};
         body.w_WB_B = {any(3.0), any(3.0), any(3.0)};
         for (double& speed : rotors.rotor_speed_rad_s) speed = 400.0 + any(400.0);
-        meter.computed(duration_from_seconds(0.2 * random.uniform()));
+        meter.computing(2.0 * random.uniform());
       }
       meter.step(st, 1ms, body, rotors);
     }

@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include <tether/base/text_table.h>
 #include <tether/judge/judge.h>
 #include <tether/stl/robustness.h>
 
@@ -134,7 +135,7 @@ class Judge {
   /// What is added to margins for the bound 0 [SI].
   static double shift_of(const Clause& clause, double before = 0.0) {
     const Condition& condition = *clause.condition;
-    const double bound = condition.bound * condition.unit->si + before;
+    const double bound = condition.unit->to_si(condition.bound) + before;
     return condition.at_most == (clause.kind == Kind::kNever) ? -bound : bound;
   }
 
@@ -175,25 +176,23 @@ class Judge {
       return;
     }
     for (std::size_t i = 0; i <= kQuantiles; ++i)
-      verdict.quantiles.push_back(
-          in_span.sorted[(i * (events.size() - 1) + kQuantiles - 1) / kQuantiles] /
-          condition.unit->si);
+      verdict.quantiles.push_back(condition.unit->from_si(
+          in_span.sorted[(i * (events.size() - 1) + kQuantiles - 1) / kQuantiles]));
     const double shift = shift_of(clause);
     const std::size_t place =
         place_in(margins, Pick::kAtShare, 0, margins.size() - 1, condition.share);
-    settle(margins[place] + shift, condition, verdict);
+    settle(margins[place] + shift, clause, verdict);
     verdict.decided_at = span.to;
     if (!verdict.met && condition.share == 1.0) {
-      const auto first_miss =
-          std::ranges::find_if(margins, [&](double margin) { return margin + shift < 0.0; });
+      const auto first_miss = std::ranges::find_if(
+          margins, [&](double margin) { return !is_met(clause, margin + shift); });
       verdict.decided_at = events[static_cast<std::size_t>(first_miss - margins.begin())].at;
     }
     follow(
         clause, 0, margins.size() - 1, margins, shift, [&](std::size_t i) { return events[i].at; },
         verdict);
     const Event& least = events[place];
-    verdict.limited_by = fmt::format("{:.4g} {} {}", least.value / condition.unit->si,
-                                     condition.unit->name, at_text(least.at));
+    verdict.limited_by = value_text(least.value, condition) + at_text(least.at);
     if (least.reaction) verdict.limited_by += text_of(*least.reaction);
   }
 
@@ -211,9 +210,20 @@ class Judge {
     return static_cast<std::size_t>(std::max(needed, 1.0)) - 1;
   }
 
-  static void settle(double margin_si, const Condition& condition, ClauseVerdict& verdict) {
-    verdict.margin = margin_si / condition.unit->si;
-    verdict.met = margin_si >= 0.0;
+  /// A bound belongs to its condition: at the bound the condition holds, and "never" is missed.
+  static bool is_met(const Clause& clause, double margin_si) {
+    return clause.kind == Kind::kNever ? margin_si > 0.0 : margin_si >= 0.0;
+  }
+
+  static void settle(double margin_si, const Clause& clause, ClauseVerdict& verdict) {
+    verdict.margin = clause.condition->unit->from_si(margin_si);
+    verdict.met = is_met(clause, margin_si);
+  }
+
+  /// "7.2 m ", with the digits in which it differs from the bound.
+  static std::string value_text(double value_si, const Condition& condition) {
+    const double value = condition.unit->from_si(value_si);
+    return fmt::format("{} {} ", distinct_text(value, condition.bound, 4), condition.unit->name);
   }
 
   // Signals.
@@ -259,15 +269,14 @@ class Judge {
     const std::vector<double>& values = signals_.trace().signals[*signal].values;
     const double before = clause.condition->quantity->counts_from_start() ? values[first] : 0.0;
     const double shift = shift_of(clause, before);
-    settle(margins[place] + shift, *clause.condition, verdict);
+    settle(margins[place] + shift, clause, verdict);
     follow(
         clause, first, last, margins, shift,
         [&](std::size_t i) { return std::max(at[i], span.from); }, verdict);
     const double value = values[place] - before;
     verdict.decided_at = decided_at(clause, verdict.met, margins, shift, {first, last}, until);
     verdict.limited_by =
-        fmt::format("{:.4g} {} {}", value / clause.condition->unit->si,
-                    clause.condition->unit->name, at_text(std::max(at[place], span.from)));
+        value_text(value, *clause.condition) + at_text(std::max(at[place], span.from));
   }
 
   /// How the margin developed over the instants or events first … last.
@@ -283,7 +292,7 @@ class Judge {
     for (std::size_t i = first; i <= last; ++i) {
       extremum = is_eventually ? std::max(extremum, margins[i]) : std::min(extremum, margins[i]);
       if ((i - first) % stride != 0 && i != last) continue;
-      verdict.margins.push_back({at(i), (extremum + shift) / clause.condition->unit->si});
+      verdict.margins.push_back({at(i), clause.condition->unit->from_si(extremum + shift)});
       if (restarts && i < last) extremum = margins[i + 1];
     }
   }
@@ -320,8 +329,8 @@ class Judge {
     const bool is_eventually = clause.kind == Kind::kEventually;
     if (met != is_eventually || clause.condition->share < 1.0) return until;
     for (std::size_t i = places.first; i <= places.second; ++i) {
-      const bool decides = is_eventually ? margins[i] + shift >= 0.0 : margins[i] + shift < 0.0;
-      if (decides) return std::min(until, signals_.trace().at[i] + clause.hold);
+      if (is_met(clause, margins[i] + shift) == is_eventually)
+        return std::min(until, signals_.trace().at[i] + clause.hold);
     }
     return until;
   }

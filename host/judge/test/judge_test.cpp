@@ -68,6 +68,27 @@ TEST(Judge, ConditionsOnSignals) {
     expect(mission(), c);
 }
 
+// A bound belongs to its condition.
+TEST(Judge, NeverIsMissedAtItsBoundAndEveryOtherClauseIsMet) {
+  Flight flight = mission().image(1.0, 1.009, 1.0).command(1.009, 1.018);
+  for (const Case& c :
+       std::vector<Case>{{R"(never = "altitude >= 8 m")", false, 0.0, 8.0, "8 m at ST 8.000 s"},
+                         {R"(never = "altitude <= 0 m")", false, 0.0, 0.0, "0 m at ST 0.000 s"},
+                         {R"(never = "altitude >= 800 cm")", false, 0.0, 8.0, "800 cm"},
+                         {R"(always = "altitude <= 8 m")", true, 0.0, 8.0, "8 m"},
+                         {R"(eventually = "altitude >= 8 m")", true, 0.0, 8.0, "8 m"},
+                         {"during = [\"a\"]\nwithin_s = 2", true, 0.0, 3.0, ""},
+                         {R"(never = "data_age >= 9 ms")", false, 0.0, 1.009, "9 ms"},
+                         {R"(always = "data_age <= 9 ms")", true, 0.0, 8.0, "9 ms"},
+                         {R"(always = "data_age >= 9 ms")", true, 0.0, 8.0, "9 ms"}})
+    expect(flight, c);
+}
+
+TEST(Judge, NamesTheDigitsInWhichAValueDiffersFromItsBound) {
+  Flight flight = mission().image(1.0, 1.009, 1.0).command(1.0090001, 1.018);
+  expect(flight, {R"(always = "data_age <= 9 ms")", false, -0.0001, 1.0090001, "9.0001 ms at ST"});
+}
+
 TEST(Judge, EnergyCountsFromTheStartOfTheClause) {
   const Flight flight = mission().battery();
   for (const Case& c : std::vector<Case>{

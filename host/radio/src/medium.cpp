@@ -206,7 +206,7 @@ std::vector<Arrival> Medium::in_transit(SimTime now) const {
                      .to = to,
                      .outcome = Outcome::kWaiting,
                      .began_at = began_at,
-                     .at = now});
+                     .at = std::max({now, message.sent_at, began_at.value_or(now)})});
     });
   };
   for (const Station& station : stations_) {

@@ -34,6 +34,7 @@ class RecordBuilder final : public McapVisitor {
 
   void message(const McapMessage& message) override {
     Channel& channel = channels_[message.channel];
+    if (channel.append == nullptr || channel.append == &RecordBuilder::skip) ++channel.unloaded;
     if (channel.append == nullptr) return;
     if (message.log_time_ns > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max()))
       throw Damage("a log time is out of range");
@@ -61,6 +62,8 @@ class RecordBuilder final : public McapVisitor {
       fail(file_, "not a record of Tether, or truncated before the end of its header" +
                       (damage.empty() ? "" : " (" + damage + ")"));
     record_.damage = std::move(damage);
+    for (const auto& [id, channel] : channels_)
+      if (channel.unloaded > 0) record_.unloaded[channel.topic] += channel.unloaded;
     return std::move(record_);
   }
 
@@ -71,6 +74,7 @@ class RecordBuilder final : public McapVisitor {
     std::string topic;
     Appender append = nullptr;
     std::uint64_t next_sequence = 0;
+    std::uint64_t unloaded = 0;
   };
 
   void count(std::uint32_t sequence, SimTime at, Channel& channel) {

@@ -116,7 +116,9 @@ class McapRecorder final : public Recorder {
   void flush() override { mcap_.flush(); }
 
   void write(const Footer& footer) override {
-    mcap_.add_metadata(kFooterName, to_metadata(footer));
+    Footer counted = footer;
+    counted.topics = mcap_.counts();
+    mcap_.add_metadata(kFooterName, to_metadata(counted));
     mcap_.finish();
     finished_ = true;
   }

@@ -23,6 +23,7 @@ void try_conditions(const scenario::CampaignScenario& entry, const sim::World& w
   for (const std::string& name : entry.conditions) {
     const scenario::Condition& condition = *entry.scenario.find_condition(name);
     sim::World copy = world;
+    scenario::resolve_step(entry.scenario, copy);
     scenario::resolve_energy(entry.scenario, condition, copy, warn);
     scenario::resolve_sensors(entry.scenario, condition, copy, warn);
     find_back_end(condition.simulator).prepare(std::move(copy), warn);

@@ -148,12 +148,17 @@ os::ChildCommand local_sut(const scenario::UavSetup& uav, const SutRun& run, std
   const SutGroup* const group = group_of(run, index);
   auto environment = environment_of(uav.placement.name, index, run);
   environment.emplace_back("TETHER_OUT", files_folder(out));
-  return {.arguments = local_sut_command(uav.sut, for_uav(run.condition, index).target,
-                                         group ? group->socket : "")
-                           .words,
-          .environment = std::move(environment),
-          .log = log,
-          .cpus = cpus_of(run.condition, index)};
+  const scenario::Condition own = for_uav(run.condition, index);
+  os::ChildCommand command{
+      .arguments = local_sut_command(uav.sut, own.target, group ? group->socket : "").words,
+      .environment = std::move(environment),
+      .log = log,
+      .cpus = cpus_of(run.condition, index),
+      // Or what it started before it connected would not be known to it.
+      .adopts_orphans =
+          own.clock == scenario::Clock::kCpu || own.clock == scenario::Clock::kCounted};
+  if (is_counted(own)) os::pad_start(command);
+  return command;
 }
 
 os::ChildCommand local_group(const scenario::Scenario& scenario, const SutRun& run,

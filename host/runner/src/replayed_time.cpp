@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <tether/base/error.h>
+#include <tether/link/messages.h>
 #include <tether/timing/stage_table.h>
 
 namespace tether::runner {
@@ -40,6 +41,7 @@ ReplayedTime replayed_time(const TrialSpec& spec) {
                .recorded_at = timing.recorded_at,
                .board = timing.board,
                .build_id = timing.build_id};
+  time.has_waits = timing.clock.starts_with(link::name(link::ClockKind::kWall));
   if (setting.mode != timing::Mode::kExact)
     time.warnings = timing::warnings(timing::stage_rows(timing));
   for (std::string& warning : time.warnings)

@@ -13,6 +13,7 @@ namespace tether::runner {
 struct ReplayedTime {
   std::vector<timing::Replay> replays;  ///< one for each UAV; empty: no time is replayed
   record::ReplayInfo from;
+  bool has_waits = false;             ///< it was wall time: what the program waited is in it
   std::vector<std::string> warnings;  ///< about the timing file, one line each
 };
 

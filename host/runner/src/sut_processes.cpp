@@ -165,13 +165,19 @@ bool SutProcesses::has_ended_well(Sut& sut) {
   return sut.uav.empty() && sut.process->poll()->code == 0;
 }
 
-std::vector<std::string> SutProcesses::await_exit() {
+std::vector<std::string> SutProcesses::await_exit(
+    const std::vector<coordinator::SutReport>& reports) {
+  const auto has_reached = [&](const Sut& sut) {
+    const auto own = std::ranges::find(reports, sut.uav, &coordinator::SutReport::uav);
+    return own != reports.end() && own->finish && own->finish->reached_goal;
+  };
   std::vector<std::string> notes;
   for (Sut& sut : suts_)
     if (!sut.process->wait(kExitLimit))
       notes.push_back(fmt::format("{} ({}) had finished but did not exit within {} s; it was ended",
                                   sut.name, sut.program, to_seconds(kExitLimit)));
-    else if (sut.process->poll()->code > os::kSignalled)
+    else if (const int code = sut.process->poll()->code;
+             code > os::kSignalled || (code != 0 && has_reached(sut)))
       notes.push_back("after it had finished: " + describe_end(sut));
   return notes;
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <tether/board/board.h>
+#include <tether/coordinator/coordinator.h>
 #include <tether/os/child_process.h>
 #include <tether/scenario/scenario.h>
 
@@ -43,9 +44,9 @@ class SutProcesses {
   /// After the loss of a SUT: how processes ended, each after "; ". Empty if nothing is known.
   /// Output is left out that ends with the last part of the reason, after ": ".
   std::string post_mortem(const std::string& reason);
-  /// Waits until finished SUTs have exited. Returns a note for each that was ended by a signal, or
-  /// that did not exit.
-  std::vector<std::string> await_exit();
+  /// Waits until finished SUTs have exited. Returns a note for each that was ended by a signal,
+  /// that did not exit, or whose exit code is a failure although it reported its goal as reached.
+  std::vector<std::string> await_exit(const std::vector<coordinator::SutReport>& reports);
   /// Ends SUTs on a board, and copies their files to the run's folder. Returns a warning for each
   /// whose files could not be copied.
   std::vector<std::string> bring_back();

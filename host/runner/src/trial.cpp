@@ -1,9 +1,11 @@
 #include "drawing_threads.h"
 #include "local_sut.h"
+#include "machine_watch.h"
 #include "size_arguments.h"
 #include "trial_run.h"
 #include "warning_log.h"
 
+#include <algorithm>
 #include <chrono>
 #include <limits>
 #include <map>
@@ -141,6 +143,15 @@ SimulatorSetup simulator_setup(const TrialSpec& spec, const sim::World& world,
           .stop = stop};
 }
 
+/// They are no doubts: the SUT's own threads may have waited for each other's processors.
+void add_board_loads(campaign::ThisRun& run) {
+  const auto add = [&run](const campaign::TargetReport& target) {
+    if (const auto load = load_of_board(target)) run.loads.push_back(*load);
+  };
+  if (run.target) add(*run.target);
+  std::ranges::for_each(run.more_targets, add);
+}
+
 /// @throws Error(kSetup) if the simulator, the board or a SUT cannot be started, or the simulator
 /// is lost before the run.
 campaign::TrialResult fly(const TrialSpec& spec, const StartSimulator& start,
@@ -164,6 +175,9 @@ campaign::TrialResult fly(const TrialSpec& spec, const StartSimulator& start,
     for (const MachineReadings& machine : conducted.others)
       campaign::add_target(result, machine.info, machine.after);
     result.this_run.notes = conducted.notes;
+    result.this_run.doubts = conducted.doubts;
+    result.this_run.loads = conducted.loads;
+    add_board_loads(result.this_run);
     const auto& notes = inputs.replayed.warnings;
     result.this_run.notes.insert(result.this_run.notes.end(), notes.begin(), notes.end());
     if (const auto work = simulator->get().work())
@@ -236,11 +250,12 @@ campaign::TrialResult run_trial(const TrialSpec& spec, const FindBackEnd& find_b
   sim::WorldStore none;
   sim::World world = (spec.worlds ? *spec.worlds : none)
                          .load(scenario::world_request(spec.scenario, spec.seed), warnings.sink());
+  scenario::resolve_step(spec.scenario, world);
   scenario::resolve_energy(spec.scenario, spec.condition, world, warnings.sink());
   const TrialInputs inputs{
       scenario::resolve_sensors(spec.scenario, spec.condition, world, warnings.sink()),
       replayed_time(spec)};
-  world.step = spec.scenario.step;
+  const campaign::StepReport step{world.step, world.step_from};
   const SimulatorSetup setup = simulator_setup(spec, world, observer, warnings, stop);
   require_sut_programs(spec.scenario, spec.condition, spec.waits_for_sut);
   const StartSimulator start = prepare(back_end, std::move(world), warnings.sink());
@@ -262,6 +277,7 @@ campaign::TrialResult run_trial(const TrialSpec& spec, const FindBackEnd& find_b
   result.this_run.started_at = started_at;
   result.this_run.machine = os::describe_machine();
   result.warnings = warnings.all();
+  result.step = step;
   folder.release_room();
   keep(spec, folder, result);
   return result;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
+#include <iterator>
 #include <utility>
 
 #include <fmt/format.h>
@@ -48,6 +49,24 @@ std::string token_of_run() {
 int known_cores() {
   const int cores = os::machine_cores();
   return cores <= sync::kMostCores ? cores : 0;
+}
+
+/// In whose time this machine measures that of SUTs, if it does.
+std::optional<clockid_t> measuring_clock(const TrialSpec& spec) {
+  std::optional<clockid_t> clock;
+  for (std::size_t uav = 0; uav < spec.scenario.uavs.size(); ++uav) {
+    if (spec.sut_place(uav) != SutPlace::kThisMachine) continue;
+    const link::ClockKind kind = clock_of(for_uav(spec.condition, uav)).kind;
+    if (kind == link::ClockKind::kCpu) return CLOCK_THREAD_CPUTIME_ID;
+    if (!link::repeats(kind)) clock = CLOCK_MONOTONIC;
+  }
+  return clock;
+}
+
+/// Whether all programs of a run are this one's descendants.
+bool starts_all_programs(const TrialSpec& spec) {
+  const bool is_address = spec.condition.simulator.find(':') != std::string::npos;
+  return !is_address && !spec.has_sut_at(SutPlace::kUnknown);
 }
 
 /// The state of a board, or of this machine.
@@ -258,6 +277,7 @@ std::vector<SutGroup> groups_of(const TrialSpec& spec, const Boards& boards,
 TrialRun::TrialRun(const TrialSpec& spec, const TrialInputs& inputs, RunningSimulator& simulator,
                    const Boards& boards, const TrialObserver& observer, std::stop_token stop)
     : spec_(spec),
+      inputs_(inputs),
       simulator_(simulator),
       boards_(boards),
       observer_(observer),
@@ -278,17 +298,26 @@ TrialRun::TrialRun(const TrialSpec& spec, const TrialInputs& inputs, RunningSimu
       others_(other_targets(spec, boards)) {}
 
 Conducted TrialRun::conduct() {
+  std::optional<MachineWatch> machine;
+  if (const auto clock = measuring_clock(spec_)) machine.emplace(machine_reader(*clock));
   if (!spec_.waits_for_sut) suts_.start(spec_.scenario, sut_run_, spec_.folder, boards_.by_uav);
   warm_up_cameras(simulator_.get());
   if (spec_.has_sut_at(SutPlace::kUnknown) && observer_.on_listening)
     observer_.on_listening(sut_instructions(spec_.scenario, sut_run_, spec_.waits_for_sut));
-  TrialEnd end = fly();
+  TrialEnd end = fly(machine);
   end.report.reason += explanation(end);
   end_suts(end);
-  return {std::move(end.report), std::move(notes_), target_, target_after_, std::move(others_)};
+  std::vector<campaign::Doubt> doubted = doubts(end.report);
+  std::vector<campaign::MachineLoad> loads;
+  if (machine) {
+    loads.push_back(machine->load(starts_all_programs(spec_)));
+    if (auto doubt = doubt_of(loads.back())) doubted.push_back(std::move(*doubt));
+  }
+  return {std::move(end.report), std::move(notes_), std::move(doubted), std::move(loads), target_,
+          target_after_,         std::move(others_)};
 }
 
-TrialEnd TrialRun::fly() {
+TrialEnd TrialRun::fly(std::optional<MachineWatch>& machine) {
   TrialEnd end;
   StallWatch stalls([&] { return suts_.stopped(); }, host_clocks());
   coordinator::RunHooks hooks;
@@ -302,6 +331,11 @@ TrialEnd TrialRun::fly() {
   hooks.on_refused = [&](const std::string& address, const std::string& reason) {
     refusals_.add(address, reason, !spec_.waits_for_sut && !have_all_joined_);
   };
+  SutWatch watched(server_->address().port);
+  hooks.on_joined = [&](std::size_t uav, const std::string& address, std::uint32_t process) {
+    watched.joined(uav, address, process);
+  };
+  hooks.threads_of = [&](std::size_t uav) { return watched.states(uav); };
   hooks.read_target = [&] { return read_targets(); };
   if (!sut_run_.counts.empty())
     hooks.computed_by = [&](std::size_t uav) {
@@ -309,9 +343,20 @@ TrialEnd TrialRun::fly() {
       return counts == sut_run_.counts.end() ? Duration(0) : counts->second.computed();
     };
   end.report = coordinator_.run(*server_, hooks);
+  if (machine) machine->end_of_run();
   refusals_.close();
   notes_ = stalls.notes(host_clocks());
   return end;
+}
+
+std::vector<campaign::Doubt> TrialRun::doubts(const coordinator::RunReport& report) const {
+  std::vector<campaign::Doubt> doubts;
+  for (std::size_t uav = 0; uav < report.suts.size(); ++uav)
+    std::ranges::copy(doubts_of(report.suts[uav], clock_of(for_uav(spec_.condition, uav)),
+                                inputs_.replayed.has_waits),
+                      std::back_inserter(doubts));
+  std::ranges::stable_sort(doubts, {}, &campaign::Doubt::kind);
+  return doubts;
 }
 
 /// The first one is for the record.
@@ -369,7 +414,7 @@ std::string TrialRun::reach_hint(const TrialEnd& end) {
 
 void TrialRun::end_suts(const TrialEnd& end) {
   if (end.report.end == RunEnd::kFinished)
-    for (std::string& note : suts_.await_exit()) notes_.push_back(std::move(note));
+    for (std::string& note : suts_.await_exit(end.report.suts)) notes_.push_back(std::move(note));
   for (const std::string& warning : suts_.bring_back())
     if (observer_.warn) observer_.warn(warning);
 }

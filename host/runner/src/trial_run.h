@@ -1,10 +1,12 @@
 #pragma once
 
+#include "machine_watch.h"
 #include "refusals.h"
 #include "replayed_time.h"
 #include "stall_watch.h"
 #include "sut_environment.h"
 #include "sut_processes.h"
+#include "sut_watch.h"
 #include "trial_end.h"
 
 #include <memory>
@@ -47,6 +49,8 @@ struct MachineReadings {
 struct Conducted {
   coordinator::RunReport report;
   std::vector<std::string> notes;
+  std::vector<campaign::Doubt> doubts;
+  std::vector<campaign::MachineLoad> loads;
   // Not in the record of a repeatable run.
   std::optional<record::TargetInfo> target;  ///< none if the user starts the SUTs
   record::Readings target_after;
@@ -66,8 +70,9 @@ class TrialRun {
   Conducted conduct();
 
  private:
-  TrialEnd fly();
+  TrialEnd fly(std::optional<MachineWatch>& machine);
   record::Readings read_targets();
+  std::vector<campaign::Doubt> doubts(const coordinator::RunReport& report) const;
   std::optional<EarlyStop> early_stop();
   void watch(const coordinator::RunStatus& status, StallWatch& stalls);
   std::string explanation(const TrialEnd& end);
@@ -75,6 +80,7 @@ class TrialRun {
   void end_suts(const TrialEnd& end);
 
   const TrialSpec& spec_;
+  const TrialInputs& inputs_;
   RunningSimulator& simulator_;
   const Boards& boards_;
   const TrialObserver& observer_;

@@ -53,7 +53,7 @@ TEST_F(Suts, GetTheirEnvironmentAndAFolder) {
 TEST_F(Suts, EachHaveAFolderIfThereAreSeveral) {
   const std::string leave = "echo text >\"$TETHER_OUT/left\"";
   start({leave, leave});
-  EXPECT_THAT(suts_.await_exit(), IsEmpty());
+  EXPECT_THAT(suts_.await_exit({}), IsEmpty());
   for (const char* file : {"uav1/left", "uav2/left"})
     EXPECT_EQ(os::read_whole(scratch_.path(file)), "text\n");
 }
@@ -75,9 +75,21 @@ TEST_F(Suts, NameTheMissingCallsOfAProgramThatEndsWithoutAnError) {
 TEST_F(Suts, ReportSignals) {
   start({"exit 0", "kill -SEGV $$"});
   EXPECT_THAT(suts_.post_mortem("lost"), testing::Not(HasSubstr("tether_finish()")));
-  EXPECT_THAT(suts_.await_exit(), ElementsAre(HasSubstr("\"uav2\"")));
+  EXPECT_THAT(suts_.await_exit({}), ElementsAre(HasSubstr("\"uav2\"")));
   EXPECT_THAT(suts_.post_mortem(""),
               testing::EndsWith("was ended by signal 11 (Segmentation fault)"));
+}
+
+TEST_F(Suts, NoteAnExitCodeThatContradictsTheReportedGoal) {
+  start({"exit 1", "exit 1", "exit 0"});
+  const auto report = [](const char* uav, bool reached) {
+    coordinator::SutReport one{.uav = uav};
+    one.finish.emplace().reached_goal = reached;
+    return one;
+  };
+  EXPECT_THAT(suts_.await_exit({report("uav1", false), report("uav2", true), report("uav3", true)}),
+              ElementsAre(AllOf(HasSubstr("after it had finished: "), HasSubstr("" uav2 ""),
+                                HasSubstr("exited with code 1"))));
 }
 
 TEST_F(Suts, RepeatNoReasonThatTheyHaveReported) {

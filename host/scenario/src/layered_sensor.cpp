@@ -87,7 +87,7 @@ void distort(uav::CameraModel& model, const Distortion& by) {
 }  // namespace
 
 LayeredSensor::LayeredSensor(sim::Sensor& sensor)
-    : sensor_(&sensor), timing_(timing_of_sdf(sensor)) {}
+    : sensor_(&sensor), timing_(timing_of_sdf(sensor)), rate_at_(sensor.declared_at) {}
 
 void LayeredSensor::lay(const SensorProfile& layer) {
   require_kind(layer, sensor_->name, sensor_->kind());
@@ -101,6 +101,7 @@ void LayeredSensor::lay_timing(const SensorProfile& layer) {
   is_timed_ |= layer.timing.has_value();
   if (layer.timing) {
     timing_ = *layer.timing;
+    note(rate_at_, layer, {"rate_hz", "timing"});
   } else if (layer.delay) {
     std::visit([&](auto& timing) { timing.delay = *layer.delay; }, timing_);
   }

@@ -23,6 +23,8 @@ class LayeredSensor {
   /// @throws Error(kBadFile), about the sensor, at the last layer that set one of two values that
   ///   exclude each other.
   uav::SensorTiming finish();
+  /// Where its rate was last set.
+  const FileLocation& rate_at() const { return rate_at_; }
 
  private:
   void lay_timing(const SensorProfile& layer);
@@ -36,6 +38,7 @@ class LayeredSensor {
 
   sim::Sensor* sensor_;
   uav::SensorTiming timing_;
+  FileLocation rate_at_;
   FileLocation limits_at_;   // where a limit of distances was last set
   FileLocation shutter_at_;  // where a camera's shutter or period was last set
   bool is_timed_ = false;    // by a layer

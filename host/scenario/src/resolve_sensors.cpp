@@ -180,6 +180,32 @@ void require_sensors_of_clauses(const UavSetup& setup, Sensors& sensors) {
   }
 }
 
+/// A sensor measures at the last step that is not after its instant.
+void check_rate(const LayeredSensor& sensor, const uav::SensorTiming& timing,
+                const std::string& uav, const sim::World& world, const sim::WarningSink& warn) {
+  constexpr int kSteady = 10;  // periods of so many steps and more vary little
+  const auto* periodic = std::get_if<uav::PeriodicTiming>(&timing);
+  if (periodic == nullptr) return;
+  const std::string subject = fmt::format("sensor '{}' of UAV '{}'", sensor.sensor().name, uav);
+  const auto ms = [](Duration d) { return fmt::format("{} ms", 1e3 * to_seconds(d)); };
+  const std::string problem = fmt::format("measures every {}, but a step is {}{}",
+                                          ms(periodic->period), ms(world.step), sim::set_at(world));
+  if (periodic->period < world.step)
+    throw Error(ErrorCode::kBadFile, sensor.rate_at(),
+                fmt::format("{} {}: several measurements would be of one instant. Set 'step_ms' to "
+                            "at most {:.6g}, or a rate of at most {:.6g} Hz",
+                            subject, problem, 1e3 * to_seconds(periodic->period),
+                            1.0 / to_seconds(world.step)))
+        .about(subject);
+  if (periodic->period % world.step == Duration(0) || periodic->period >= kSteady * world.step)
+    return;
+  if (warn)
+    warn({Consequence::kBehavesDifferent, sensor.rate_at(), subject,
+          fmt::format("{}: the time between two measurements varies by {}. Set a 'step_ms' that "
+                      "divides the period",
+                      problem, ms(world.step))});
+}
+
 const UavSetup& setup_of(const Scenario& scenario, const std::string& uav) {
   for (const UavSetup& setup : scenario.uavs) {
     if (setup.placement.name == uav) return setup;
@@ -189,7 +215,8 @@ const UavSetup& setup_of(const Scenario& scenario, const std::string& uav) {
 }
 
 std::vector<uav::SensorTiming> resolve(const Scenario& scenario, const Condition& condition,
-                                       sim::Uav& uav, const sim::WarningSink& warn) {
+                                       const sim::World& world, sim::Uav& uav,
+                                       const sim::WarningSink& warn) {
   const UavSetup& setup = setup_of(scenario, uav.name);
   Sensors sensors = sensors_of(uav);
   if (setup.profile) ProfileLayer(*setup.profile, uav, sensors).lay(warn);
@@ -199,7 +226,10 @@ std::vector<uav::SensorTiming> resolve(const Scenario& scenario, const Condition
   require_sensors_of_clauses(setup, sensors);
 
   std::vector<uav::SensorTiming> timings;
-  for (LayeredSensor& sensor : sensors) timings.push_back(sensor.finish());
+  for (LayeredSensor& sensor : sensors) {
+    timings.push_back(sensor.finish());
+    check_rate(sensor, timings.back(), uav.name, world, warn);
+  }
   return timings;
 }
 
@@ -210,7 +240,8 @@ std::vector<std::vector<uav::SensorTiming>> resolve_sensors(const Scenario& scen
                                                             sim::World& world,
                                                             const sim::WarningSink& warn) {
   std::vector<std::vector<uav::SensorTiming>> timings;
-  for (sim::Uav& uav : world.uavs) timings.push_back(resolve(scenario, condition, uav, warn));
+  for (sim::Uav& uav : world.uavs)
+    timings.push_back(resolve(scenario, condition, world, uav, warn));
   return timings;
 }
 

@@ -20,14 +20,19 @@ struct Place {
   const char* name;
   const char* folder;
   const char* extension;
-  const char* use;  ///< what to type before a file's name
+  const char* mark;  ///< a key that of all TOML files only those of this kind have
+  const char* use;   ///< what to type before a file's name; null: it is named in a file
 };
-constexpr std::array<Place, 5> kPlaces = {
-    {{"scenario", "scenarios", ".toml", "tether run"},
-     {"campaign", "campaigns", ".toml", "tether campaign"},
-     {"world", "worlds", ".sdf", "tether world check"},
-     {"profile", "profiles", ".toml", "tether run SCENARIO --profile"},
-     {"target", "profiles/targets", ".toml", "tether run SCENARIO --target"}}};
+constexpr std::array<Place, kShippedKinds> kPlaces = {
+    {{"scenario", "scenarios", ".toml", "world", "tether run"},
+     {"campaign", "campaigns", ".toml", "scenario", "tether campaign"},
+     {"mission", "missions", ".toml", "task", nullptr},
+     {"world", "worlds", ".sdf", nullptr, "tether world check"},
+     {"model", "models", "/model.sdf", nullptr, nullptr},
+     {"profile", "profiles", ".toml", "sensors", "tether run SCENARIO --profile"},
+     {"energy file", "energy", ".toml", "rotor", nullptr},
+     {"target", "profiles/targets", ".toml", "clock", "tether run SCENARIO --target"},
+     {"rig", "rigs", ".toml", "anchor", nullptr}}};
 
 const Place& place_of(ShippedKind kind) {
   return kPlaces.at(static_cast<std::size_t>(kind));
@@ -52,6 +57,15 @@ std::string first_comment(const std::string& xml) {
   return text;
 }
 
+/// Whether a file that could be meant by a shipped file's name is of that kind.
+bool is_of_kind(const fs::path& file, const Place& place) try {
+  std::error_code ignored;
+  if (!fs::is_regular_file(file, ignored)) return false;
+  return place.mark == nullptr || toml::Document::load(file).root().has(place.mark);
+} catch (const Error&) {
+  return false;
+}
+
 std::string description_of(const fs::path& file) {
   if (file.extension() == ".sdf") return first_comment(os::read_file(file, 1 << 20));
   const toml::Document document = toml::Document::load(file);
@@ -65,14 +79,21 @@ const char* to_text(ShippedKind kind) {
 }
 
 ShippedFiles ShippedFiles::of_program(const fs::path& program) {
-  const fs::path bin = program.parent_path();
-  const fs::path installed = bin.parent_path() / "share/tether";
+  const fs::path installed = program.parent_path().parent_path() / "share/tether";
   if (fs::is_directory(installed)) return ShippedFiles(installed);
-  return ShippedFiles(bin.parent_path().parent_path().parent_path() / "data");
+  fs::path folder = program.parent_path();
+  while (folder.has_relative_path() && !fs::is_directory(folder / "data/scenarios"))
+    folder = folder.parent_path();
+  return ShippedFiles(folder / "data");
 }
 
 fs::path ShippedFiles::file_of(ShippedKind kind, const std::string& name) const {
   return data_ / place_of(kind).folder / (name + place_of(kind).extension);
+}
+
+bool ShippedFiles::has(ShippedKind kind, const std::string& name) const {
+  std::error_code ignored;
+  return fs::is_regular_file(file_of(kind, name), ignored);
 }
 
 std::vector<ShippedFile> ShippedFiles::list(ShippedKind kind) const {
@@ -80,38 +101,63 @@ std::vector<ShippedFile> ShippedFiles::list(ShippedKind kind) const {
   const fs::path folder = data_ / place_of(kind).folder;
   if (!fs::is_directory(folder)) return files;
   for (const auto& entry : fs::directory_iterator(folder)) {
-    if (entry.path().extension() != place_of(kind).extension) continue;
-    files.push_back({entry.path().stem(), description_of(entry.path())});
+    const fs::path file = file_of(kind, entry.path().stem());
+    const bool is_one = entry.path() == file || entry.path() == file.parent_path();
+    if (is_one && fs::is_regular_file(file))
+      files.push_back({entry.path().stem(), description_of(file)});
   }
   std::sort(files.begin(), files.end(),
             [](const ShippedFile& a, const ShippedFile& b) { return a.name < b.name; });
   return files;
 }
 
-fs::path ShippedFiles::find(ShippedKind kind, const std::string& given) const {
-  const fs::path path = given;
+std::string ShippedFiles::why_none(ShippedKind kind, const std::string& given,
+                                   const fs::path& folder) const {
+  const Place& place = place_of(kind);
+  for (std::size_t i = 0; i < kPlaces.size(); ++i) {
+    if (!has(static_cast<ShippedKind>(i), given)) continue;
+    const Place& other = kPlaces[i];
+    return fmt::format("'{}' is a shipped {}, not a {}.", given, other.name, place.name) +
+           (other.use == nullptr ? "" : fmt::format(" To use it, type: {} {}", other.use, given));
+  }
+  const std::string file = given + place.extension;
   std::error_code ignored;
-  if (fs::is_regular_file(path, ignored) || path.has_parent_path() || path.has_extension())
-    return path;
-  const fs::path shipped = file_of(kind, given);
-  if (fs::is_regular_file(shipped, ignored)) return shipped;
-  for (std::size_t i = 0; i < kPlaces.size(); ++i)
-    if (fs::is_regular_file(file_of(static_cast<ShippedKind>(i), given), ignored))
-      throw Error(ErrorCode::kUsage,
-                  fmt::format("'{0}' is a shipped {1}, not a {2}. To use it, type: {3} {0}", given,
-                              kPlaces[i].name, place_of(kind).name, kPlaces[i].use))
-          .about(given);
+  if (fs::is_regular_file(folder / file, ignored))
+    return fmt::format("'{}' is no shipped {}. To use the file here, write '{}'.", given,
+                       place.name, file);
   const auto files = list(kind);
   std::vector<std::string_view> names;
-  for (const ShippedFile& file : files) names.push_back(file.name);
+  for (const ShippedFile& one : files) names.push_back(one.name);
   const std::string_view near = nearest(given, names);
-  throw Error(
-      ErrorCode::kUsage,
-      fmt::format("'{}' is neither a file nor a shipped {}{} `tether list` lists the "
-                  "shipped files, which are in {}.",
-                  given, place_of(kind).name,
-                  near.empty() ? "." : fmt::format("; did you mean '{}'?", near), data_.string()))
-      .about(given);
+  return fmt::format(
+      "'{}' is neither a file nor a shipped {}{} `tether list` lists the shipped "
+      "files, which are in {}.",
+      given, place.name, near.empty() ? "." : fmt::format("; did you mean '{}'?", near),
+      data_.string());
+}
+
+std::optional<fs::path> ShippedFiles::named(ShippedKind kind, const std::string& given,
+                                            const fs::path& folder) const {
+  const fs::path path = given;
+  std::error_code ignored;
+  if (fs::is_regular_file(folder / path, ignored) || path.has_parent_path() || path.has_extension())
+    return std::nullopt;
+  if (!has(kind, given)) throw Error(ErrorCode::kUsage, why_none(kind, given, folder)).about(given);
+  const fs::path shipped = file_of(kind, given);
+  for (const std::string& own :
+       {given + place_of(kind).extension, given + shipped.extension().string()})
+    if (is_of_kind(folder / own, place_of(kind)) && !fs::equivalent(folder / own, shipped, ignored))
+      throw Error(
+          ErrorCode::kUsage,
+          fmt::format("'{0}' is a shipped {1}, but there is also the file '{2}' here. Write "
+                      "'{2}' for this file, or rename it to use the shipped one.",
+                      given, place_of(kind).name, own))
+          .about(given);
+  return shipped;
+}
+
+fs::path ShippedFiles::find(ShippedKind kind, const std::string& given) const {
+  return named(kind, given, {}).value_or(given);
 }
 
 }  // namespace tether::scenario

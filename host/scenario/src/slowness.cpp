@@ -35,7 +35,6 @@ std::string why_not_comparable(const Target& target, const Condition& condition)
 Slowness by_costs(const os::Emulator& target, const os::Emulator& own) {
   std::pair<double, double> bounds{HUGE_VAL, 0.0};
   for (std::size_t i = 0; i < own.cost_units.size(); ++i) {
-    if (own.cost_units[i] == 0 && target.cost_units[i] == 0) continue;
     const double ratio =
         static_cast<double>(target.cost_units[i]) / static_cast<double>(own.cost_units[i]);
     bounds = {std::min(bounds.first, ratio), std::max(bounds.second, ratio)};
@@ -58,13 +57,7 @@ Slowness slowness(const Target& target, const Condition& condition) {
       result.bounds = {bounds->first / own, bounds->second / own};
     return result;
   }
-  const Slowness result = by_costs(*target.emulator, *condition.target->emulator);
-  const bool is_known = result.bounds->first > 0.0 && std::isfinite(result.bounds->second);
-  require(is_known ? ""
-                   : fmt::format("cannot be compared with condition \"{}\": a kind of work costs "
-                                 "nothing in one of them.",
-                                 condition.name));
-  return result;
+  return by_costs(*target.emulator, *condition.target->emulator);
 }
 
 }  // namespace tether::scenario

@@ -64,6 +64,49 @@ TEST_F(ResolveSensors, TimingsAreInTheOrderOfTheWorldsSensors) {
   EXPECT_TRUE(std::holds_alternative<uav::OnDemandTiming>(timings[1][1])) << "as in SDF";
 }
 
+// The step.
+
+TEST_F(ResolveSensors, RefusesARateThatMeasuresTwiceInAStep) {
+  world_.step = milliseconds(2);
+  world_.step_at = {"/w.sdf", 4};
+  world_.uavs[1].sensors[0] = make_imu("imu", 1000.0);
+  world_.uavs[1].sensors[0].declared_at = {"/uav.sdf", 9};
+  const Error error = bad_file_error([&] { (void)resolve(); });
+  EXPECT_EQ(error.where(), (FileLocation{"/uav.sdf", 9}));
+  EXPECT_THAT(error.what(), HasSubstr("measures every 1 ms, but a step is 2 ms (set at /w.sdf:4)"));
+  world_.step = milliseconds(1);
+  EXPECT_NO_THROW((void)resolve());
+}
+
+TEST_F(ResolveSensors, WarnsOfARateThatTheStepMakesUnsteady) {
+  world_.uavs[1].sensors[0] = make_imu("imu", 400.0);
+  (void)resolve();
+  EXPECT_THAT(warnings_, testing::Contains(HasSubstr("varies by 1 ms")));
+  warnings_.clear();
+  world_.uavs[1].sensors[0] = make_imu("imu", 250.0);
+  (void)resolve();
+  world_.uavs[1].sensors[0] = make_imu("imu", 60.0);
+  (void)resolve();
+  EXPECT_THAT(warnings_, testing::Not(testing::Contains(HasSubstr("varies"))));
+}
+
+TEST_F(ResolveSensors, TakesTheScenariosStepElseTheWorlds) {
+  world_.step = milliseconds(4);
+  world_.step_from = "world";
+  resolve_step(scenario_, world_);
+  EXPECT_EQ(world_.step, milliseconds(2));
+  EXPECT_EQ(world_.step_from, "scenario");
+  EXPECT_EQ(world_.step_at.file, scenario_.file);
+  scenario_.step.reset();
+  world_.step = milliseconds(30);
+  const Error error = bad_file_error([&] { resolve_step(scenario_, world_); });
+  EXPECT_EQ(error.subject(), "ground_truth_period_ms");
+  EXPECT_EQ(error.where().line, 102);
+  world_.step = milliseconds(20);
+  resolve_step(scenario_, world_);
+  EXPECT_EQ(world_.step, milliseconds(20));
+}
+
 // Layers.
 
 TEST_F(ResolveSensors, ALaterLayerOverridesAnEarlierOne) {

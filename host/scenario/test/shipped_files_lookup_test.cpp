@@ -42,6 +42,32 @@ TEST_F(ShippedFilesLookup, RefusesANameOfNoFileAndNamesTheNearestOfTheSameKind) 
   EXPECT_THAT(refusal(ShippedKind::kCampaign, "hover"), HasSubstr("tether run hover"));
 }
 
+TEST_F(ShippedFilesLookup, RefusesANameIfAFileOfThatKindIsBesideIt) {
+  const auto own = folder_.path("own");
+  folder_.write("data/worlds/room.sdf", "<sdf/>");
+  folder_.write("data/models/uav/model.sdf", "<sdf/>");
+  const auto named = [&](ShippedKind kind, const std::string& name) {
+    return shipped_.named(kind, name, own);
+  };
+  folder_.write("own/hover.toml", "trials = 3\n");  // a campaign
+  EXPECT_EQ(named(ShippedKind::kScenario, "hover"), hover_);
+  EXPECT_EQ(named(ShippedKind::kModel, "uav"), folder_.path("data/models/uav/model.sdf"));
+  struct Own {
+    ShippedKind kind;
+    const char *name, *file, *text;
+  };
+  for (const auto& [kind, name, file, text] :
+       {Own{ShippedKind::kScenario, "hover", "hover.toml", "world = \"room\"\n"},
+        Own{ShippedKind::kWorld, "room", "room.sdf", "<sdf/>"},
+        Own{ShippedKind::kModel, "uav", "uav.sdf", "<sdf/>"},
+        Own{ShippedKind::kModel, "uav", "uav/model.sdf", "<sdf/>"}}) {
+    const auto path = folder_.write(std::string("own/") + file, text);
+    const Error error = thrown_error(ErrorCode::kUsage, [&] { named(kind, name); });
+    EXPECT_THAT(error.what(), HasSubstr("Write '" + std::string(file) + "'"));
+    std::filesystem::remove(path);
+  }
+}
+
 TEST_F(ShippedFilesLookup, ListsNamesWithDescriptionsInOrder) {
   EXPECT_THAT(shipped_.list(ShippedKind::kScenario),
               ElementsAre(Field(&ShippedFile::name, "hover"), Field(&ShippedFile::name, "land")));
@@ -64,6 +90,8 @@ TEST_F(ShippedFilesLookup, BelongsToAProgramInstalledOrInItsBuildFolder) {
   EXPECT_EQ(ShippedFiles::of_program(folder_.path("build/release/bin/tether"))
                 .find(ShippedKind::kScenario, "hover"),
             hover_);
+  EXPECT_EQ(ShippedFiles::of_program(folder_.path("build/dev/host/x/x_test")).folder(),
+            folder_.path("data"));
   const auto installed = folder_.write("usr/share/tether/scenarios/hover.toml", "");
   EXPECT_EQ(ShippedFiles::of_program(folder_.path("usr/bin/tether"))
                 .find(ShippedKind::kScenario, "hover"),
@@ -72,8 +100,8 @@ TEST_F(ShippedFilesLookup, BelongsToAProgramInstalledOrInItsBuildFolder) {
 
 TEST(ShippedFilesOfTheProject, HaveADescriptionEach) {
   const ShippedFiles shipped(std::filesystem::path(TETHER_SOURCE_DIR) / "data");
-  for (const auto kind : {ShippedKind::kScenario, ShippedKind::kCampaign, ShippedKind::kWorld,
-                          ShippedKind::kProfile, ShippedKind::kTarget}) {
+  for (int i = 0; i < kShippedKinds; ++i) {
+    const auto kind = static_cast<ShippedKind>(i);
     EXPECT_FALSE(shipped.list(kind).empty()) << to_text(kind);
     for (const ShippedFile& file : shipped.list(kind)) EXPECT_NE(file.description, "") << file.name;
   }

@@ -121,13 +121,13 @@ std::vector<double> Sizing::next(std::size_t count) const {
   if (basis_ == Basis::kLevels) {
     const Level level = answer_by_levels(question, flights_).next;
     while (next.size() < count)
-      next.push_back(any_of(level.slowdowns, flights_.size() + next.size()));
+      next.push_back(any_of(level.slowdowns, flights_.size() + copies_ + next.size()));
     return next;
   }
   next = curve().next_slowdowns(count);
   const double estimate = curve().threshold().estimate;
   for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t flight = flights_.size() + i;
+    const std::size_t flight = flights_.size() + copies_ + i;
     if (flight % kOneOf == kOneOf - 1)
       next[i] = most_suspicious(slowdowns, estimate, flights_, std::span(next).first(i));
     next[i] = any_of(neighbourhood(question, slowdowns, next[i]), flight);

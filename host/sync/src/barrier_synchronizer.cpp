@@ -156,13 +156,4 @@ bool BarrierSynchronizer::is_held(SutIndex sut) const {
   return suts_[sut].next_call() != nullptr;
 }
 
-std::optional<SutIndex> BarrierSynchronizer::slowest_computing() const {
-  std::optional<SutIndex> slowest;
-  for (SutIndex i = 0; i < suts_.size(); ++i) {
-    if (suts_[i].gone || is_held(i)) continue;
-    if (!slowest || suts_[i].bound < suts_[*slowest].bound) slowest = i;
-  }
-  return slowest;
-}
-
 }  // namespace tether::sync

@@ -36,7 +36,7 @@ Duration SharedCores::rounded_up(CoreUnits work, CoreUnits rate) {
 }
 
 // Between two events the number of computing programs, and so the share of each, does not change.
-std::optional<SharedCores::Stamp> SharedCores::next() {
+std::optional<SharedCores::Stamp> SharedCores::next(ExecTime until, const Used& used) {
   while (true) {
     CoreUnits computing = 0;
     bool is_unknown = false;
@@ -53,7 +53,7 @@ std::optional<SharedCores::Stamp> SharedCores::next() {
       p.phase = Phase::kStamped;
       return Stamp{i, now_};
     }
-    if (is_unknown) return std::nullopt;
+    if (is_unknown || now_ >= until) return std::nullopt;
 
     const CoreUnits share = computing > cores_ ? per_ns_ * cores_ / computing : per_ns_;
     assert(share > 0);
@@ -64,9 +64,14 @@ std::optional<SharedCores::Stamp> SharedCores::next() {
       if (p.phase == Phase::kWaiting) step = std::min(step, p.resumes_at - now_);
     }
     if (step == Duration::max()) return std::nullopt;
+    step = std::min(step, until - now_);
+    const double cores = static_cast<double>(share) / static_cast<double>(per_ns_);
+    for (std::size_t i = 0; i < programs_.size(); ++i) {
+      if (programs_[i].phase != Phase::kComputing) continue;
+      programs_[i].computed += CoreUnits(step.count()) * share;
+      if (used) used({i, now_, now_ + step, cores});
+    }
     now_ += step;
-    for (Program& p : programs_)
-      if (p.phase == Phase::kComputing) p.computed += CoreUnits(step.count()) * share;
   }
 }
 

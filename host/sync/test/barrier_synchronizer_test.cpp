@@ -122,13 +122,11 @@ TEST(Barrier, ChargesAStampInThePastAtTheBound) {
   EXPECT_FALSE(barrier.arrive(0, et(6000), st(6000)).violation);
 }
 
-TEST(Barrier, FindsTheSlowestComputingSutThatHasNotLeft) {
+TEST(Barrier, WhoHasLeftBoundsNothing) {
   auto barrier = with_suts({500, 200, 1900});
-  EXPECT_EQ(barrier.slowest_computing(), SutIndex{1});
   request(barrier, 1, 300, 5300);
-  EXPECT_EQ(barrier.slowest_computing(), SutIndex{0});
+  EXPECT_EQ(barrier.lower_bound(), st(0));
   barrier.remove(0);
-  EXPECT_EQ(barrier.slowest_computing(), SutIndex{2});
   EXPECT_EQ(barrier.lower_bound(), st(1000));
 }
 
@@ -178,10 +176,8 @@ TEST(ConcurrentSut, GetsAReplyOnlyWhileItIsStoppedAtOrAfterItsTimestamp) {
   call(barrier, 2, 960, 990);
   barrier.stop(0, et(970));
   EXPECT_FALSE(barrier.is_held(0));
-  EXPECT_EQ(barrier.slowest_computing(), SutIndex{0});
   EXPECT_FALSE(barrier.release(st(0)));
   barrier.stop(0, et(990));
-  EXPECT_FALSE(barrier.slowest_computing());
   EXPECT_TRUE(barrier.release(st(0)));
 }
 

@@ -34,7 +34,6 @@ TEST(NoAllocation, TheBarrierAllocatesOnlyWhereSutsJoin) {
     barrier.stop(concurrent, due);
     st = barrier.lower_bound();
     while (barrier.release(st)) ++released;
-    barrier.slowest_computing();
     barrier.progress(serial, at(100 * round + 100));
     barrier.progress(concurrent, at(100 * round + 100));
     st = barrier.lower_bound();

@@ -10,20 +10,23 @@ namespace {
 
 using Shares = std::array<double, kWorkClasses>;
 
-/// The normal equations of the relative errors: minimise Σ (row · costs − 1)².
+/// The normal equations of the relative errors, with the costs above their floor as unknowns:
+/// minimise Σ (row · (floor + x) − 1)².
 struct Normal {
+  Costs_ns floor{};
   std::array<Shares, kWorkClasses> matrix{};
   Shares right{};
-  double ones = 0.0;
+  double squares = 0.0;  // of what is left of the times above the floor
 
   void add(const CountedBlock& block) {
     Shares row{};
     for (std::size_t k = 0; k < kWorkClasses; ++k) row[k] = block.work[k] / block.time_ns;
+    const double left = -relative_error(floor, block);
     for (std::size_t i = 0; i < kWorkClasses; ++i) {
-      right[i] += block.weight * row[i];
+      right[i] += block.weight * row[i] * left;
       for (std::size_t k = 0; k < kWorkClasses; ++k) matrix[i][k] += block.weight * row[i] * row[k];
     }
-    ones += block.weight;
+    squares += block.weight * left * left;
   }
 };
 
@@ -62,7 +65,7 @@ std::optional<std::vector<double>> solve(const Normal& normal,
 /// Sum of squared relative errors of a least-squares solution.
 double residual(const Normal& normal, const std::vector<std::size_t>& kinds,
                 const std::vector<double>& x) {
-  double sum = normal.ones;
+  double sum = normal.squares;
   for (std::size_t i = 0; i < kinds.size(); ++i) sum -= x[i] * normal.right[kinds[i]];
   return sum;
 }
@@ -79,12 +82,12 @@ double relative_error(const Costs_ns& costs, const CountedBlock& block) {
   return predicted_ns(costs, block) / block.time_ns - 1.0;
 }
 
-Costs_ns fit_costs(const std::vector<CountedBlock>& blocks) {
-  Normal normal;
+Costs_ns fit_costs(const std::vector<CountedBlock>& blocks, const Costs_ns& floor_ns) {
+  Normal normal{.floor = floor_ns};
   for (const CountedBlock& block : blocks) normal.add(block);
   Costs_ns best{};
   double least = std::numeric_limits<double>::infinity();
-  for (unsigned set = 1; set < 1u << kWorkClasses; ++set) {
+  for (unsigned set = 0; set < 1u << kWorkClasses; ++set) {
     std::vector<std::size_t> kinds;
     for (std::size_t k = 0; k < kWorkClasses; ++k)
       if ((set >> k & 1u) != 0) kinds.push_back(k);
@@ -93,18 +96,19 @@ Costs_ns fit_costs(const std::vector<CountedBlock>& blocks) {
     const double sum = residual(normal, kinds, *x);
     if (sum >= least) continue;
     least = sum;
-    best = {};
-    for (std::size_t i = 0; i < kinds.size(); ++i) best[kinds[i]] = (*x)[i];
+    best = floor_ns;
+    for (std::size_t i = 0; i < kinds.size(); ++i) best[kinds[i]] += (*x)[i];
   }
   return best;
 }
 
-std::vector<double> errors_when_left_out(const std::vector<CountedBlock>& blocks) {
+std::vector<double> errors_when_left_out(const std::vector<CountedBlock>& blocks,
+                                         const Costs_ns& floor_ns) {
   std::vector<double> errors;
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     std::vector<CountedBlock> others = blocks;
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
-    errors.push_back(relative_error(fit_costs(others), blocks[i]));
+    errors.push_back(relative_error(fit_costs(others, floor_ns), blocks[i]));
   }
   return errors;
 }

@@ -23,11 +23,13 @@ double predicted_ns(const Costs_ns& costs, const CountedBlock& block);
 /// The prediction's error as a share of the time.
 double relative_error(const Costs_ns& costs, const CountedBlock& block);
 
-/// The costs ≥ 0 with the least weighted sum of squared relative errors. Exact: the least-squares
-/// solution of every set of kinds is computed, and the best without a negative cost is taken.
-Costs_ns fit_costs(const std::vector<CountedBlock>& blocks);
+/// The costs ≥ `floor_ns` with the least weighted sum of squared relative errors. Exact: the
+/// least-squares solution of every set of kinds is computed, with the others at their floor, and
+/// the best without a cost below its floor is taken.
+Costs_ns fit_costs(const std::vector<CountedBlock>& blocks, const Costs_ns& floor_ns);
 
 /// For each block, the relative error of its prediction by a fit to the other blocks.
-std::vector<double> errors_when_left_out(const std::vector<CountedBlock>& blocks);
+std::vector<double> errors_when_left_out(const std::vector<CountedBlock>& blocks,
+                                         const Costs_ns& floor_ns);
 
 }  // namespace tether::calibration

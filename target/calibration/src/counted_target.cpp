@@ -1,5 +1,6 @@
 #include "counted_target.h"
 
+#include "kernels.h"
 #include "report.h"
 #include "statistics.h"
 
@@ -8,6 +9,7 @@
 #include <chrono>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include <tether/base/text_table.h>
@@ -29,6 +31,10 @@ constexpr double kWeightOfKernels = 0.05;
 constexpr Duration kLongestCount = std::chrono::minutes(30);
 constexpr Duration kLook = std::chrono::milliseconds(200);
 
+// How many pieces of each kind of work the widest cores begin in a cycle: eight in all, and as many
+// as they have units for that kind.
+constexpr Costs_ns kMostPerCycle = {8, 2, 1, 8, 8, 8, 4, 4, 4, 1};
+
 struct EmulatedMachine {
   const char* architecture;
   const char* emulator;
@@ -47,10 +53,12 @@ Calibration counted_by(const CalibrateOptions& options, const os::Emulator& emul
                                   ? os::own_file().string()
                                   : std::filesystem::absolute(options.program).string();
   os::CountFile counts(emulator);
-  os::ChildProcess child({.arguments = {os::find_emulator(emulator).string(), program, "calibrate",
-                                        "--rounds", kCountedRounds, "--out", out.string()},
-                          .environment = counts.environment(),
-                          .log = log});
+  os::ChildCommand command{.arguments = {os::find_emulator(emulator).string(), program, "calibrate",
+                                         "--rounds", kCountedRounds, "--out", out.string()},
+                           .environment = counts.environment(),
+                           .log = log};
+  os::pad_start(command);
+  os::ChildProcess child(command);
   if (tell) tell("counting under " + emulator.program);
   const auto end = std::chrono::steady_clock::now() + kLongestCount;
   while (!child.wait(kLook))
@@ -71,20 +79,49 @@ const BlockTimes* find(const std::vector<BlockTimes>& blocks, const std::string&
   return found == blocks.end() ? nullptr : &*found;
 }
 
+Failure not_measured(const std::string& block) {
+  return invalid("the block \"" + block +
+                 "\" was not measured there. Measure that machine again with the same tether-sut");
+}
+
 Result<std::vector<CountedBlock>> paired(const std::vector<BlockTimes>& measured,
                                          const std::vector<BlockTimes>& counted) {
   std::vector<CountedBlock> pairs;
   for (const BlockTimes& block : counted) {
     const BlockTimes* times = find(measured, block.name);
-    if (!times || block.work.size() != kWorkClasses)
-      return invalid("the block \"" + block.name +
-                     "\" was not measured there. Measure that machine again with the same "
-                     "tether-sut");
+    if (!times || block.work.size() != kWorkClasses) return not_measured(block.name);
     CountedBlock pair{.name = block.name, .time_ns = 1e6 * quartiles(times->cpu_ms).median};
     std::copy(block.work.begin(), block.work.end(), pair.work.begin());
     pairs.push_back(std::move(pair));
   }
   return pairs;
+}
+
+/// What work costs at least on the machine with these kernels; none: it is not known.
+std::optional<Costs_ns> floor_of(const std::vector<BlockTimes>& kernels) {
+  const BlockTimes* const chain = find(kernels, kChain);
+  if (!chain) return std::nullopt;
+  const double cycle_ns = 1e6 * quartiles(chain->cpu_ms).median / kCyclesOfChain;
+  Costs_ns floor_ns{};
+  for (std::size_t kind = 0; kind < kWorkClasses; ++kind)
+    floor_ns[kind] = cycle_ns / kMostPerCycle[kind];
+  return floor_ns;
+}
+
+/// Which costs the times do not determine.
+std::string bounds_text(const CountedTarget& target) {
+  std::string bounded;
+  for (std::size_t kind = 0; kind < kWorkClasses; ++kind)
+    if (target.costs[kind] <= target.floor_ns[kind])
+      bounded += (bounded.empty() ? "" : ", ") + std::string(kWorkClassNames[kind]);
+  const double cycle_ns = target.floor_ns[0] * kMostPerCycle[0];
+  return "A cycle is " + fixed(cycle_ns, 3) + " ns (block " + kChain +
+         "). No cost is below what the widest cores need: an eighth of a\n"
+         "cycle, a quarter for floating-point and vector work, half for a multiplication, and one "
+         "cycle for\na division or an atomic operation.\n" +
+         (bounded.empty()
+              ? "No cost is at this bound.\n"
+              : "At this bound, because the blocks do not show more: " + bounded + ".\n");
 }
 
 std::string signed_percent(double share) {
@@ -98,8 +135,8 @@ std::vector<std::string> row(const CountedTarget& target, const CountedBlock& bl
 }
 
 constexpr const char* kWhatIsNotKnown =
-    "The costs are averages over this work. They do not represent cache misses, memory bandwidth\n"
-    "and changes of the clock rate.\n";
+    "The costs are averages over this work. They do not represent cache misses, memory bandwidth,\n"
+    "changes of the clock rate, and chains of operations that wait for each other.\n";
 
 }  // namespace
 
@@ -124,6 +161,9 @@ Result<Calibration> count_work(const CalibrateOptions& options, const os::Emulat
 Result<CountedTarget> fit_target(const os::Emulator& emulator, const Calibration& there,
                                  const Calibration& counted) {
   CountedTarget target{.emulator = emulator, .blocks = {}, .left_out = {}, .whole = {}};
+  const auto floor_ns = floor_of(there.kernels);
+  if (!floor_ns) return not_measured(kChain);
+  target.floor_ns = *floor_ns;
   for (const auto& [measured, work] :
        {std::pair(&there.blocks, &counted.blocks), std::pair(&there.kernels, &counted.kernels)}) {
     Result<std::vector<CountedBlock>> pairs = paired(*measured, *work);
@@ -138,8 +178,8 @@ Result<CountedTarget> fit_target(const os::Emulator& emulator, const Calibration
     return invalid("the block \"" + std::string(kWholeStep) + "\" was not counted");
   target.whole = *whole;
   target.blocks.erase(whole);
-  target.costs = fit_costs(target.blocks);
-  target.left_out = errors_when_left_out(target.blocks);
+  target.costs = fit_costs(target.blocks, target.floor_ns);
+  target.left_out = errors_when_left_out(target.blocks, target.floor_ns);
   return target;
 }
 
@@ -153,7 +193,8 @@ std::string prediction_table(const CountedTarget& target) {
   rows.push_back(row(target, target.whole));
   rows.back().emplace_back("not in the fit");
   return text_table(rows) +
-         "Left out: the error of the prediction by a fit to the other blocks.\n" + kWhatIsNotKnown;
+         "Left out: the error of the prediction by a fit to the other blocks.\n" +
+         bounds_text(target) + kWhatIsNotKnown;
 }
 
 std::string counted_target_text(const std::string& name, const CountedTarget& target,
@@ -164,9 +205,9 @@ std::string counted_target_text(const std::string& name, const CountedTarget& ta
                         plain(counted.program) + " under " + emulator.program + ", " +
                         plain(counted.when) + ".\n\n" + prediction_table(target);
   std::string text = "# ";
-  for (const char c : comment.substr(0, comment.size() - 1)) {
-    text += c;
-    if (c == '\n') text += "# ";
+  for (std::size_t i = 0; i + 1 < comment.size(); ++i) {
+    text += comment[i];
+    if (comment[i] == '\n') text += comment[i + 1] == '\n' ? "#" : "# ";
   }
   text += "\nname = " + toml_string(name) +
           "\ndescription = " + toml_string(machine_line(there.machine) + ", by counted work") +

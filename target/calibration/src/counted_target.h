@@ -16,6 +16,7 @@ namespace tether::calibration {
 struct CountedTarget {
   os::Emulator emulator;  ///< without costs
   Costs_ns costs{};
+  Costs_ns floor_ns{};               ///< no cost is less
   std::vector<CountedBlock> blocks;  ///< of the fit
   std::vector<double> left_out;      ///< error of each, by a fit to the others
   CountedBlock whole;                ///< the whole step, which is not in the fit
@@ -29,7 +30,8 @@ Result<os::Emulator> emulator_for(const CalibrateOptions& options, const Machine
 Result<Calibration> count_work(const CalibrateOptions& options, const os::Emulator& emulator,
                                const TellRound& tell);
 
-/// Fits the costs to `there`'s times of the work in `counted`. Fails (kInvalid) with one line if
+/// Fits the costs to `there`'s times of the work in `counted`. No kind of work costs less than on
+/// the widest cores at the clock rate that `kChain` shows. Fails (kInvalid) with one line if
 /// they have different blocks, or an older program measured.
 Result<CountedTarget> fit_target(const os::Emulator& emulator, const Calibration& there,
                                  const Calibration& counted);

@@ -149,7 +149,7 @@ void atomics() {
   g_result = shared;
 }
 
-constexpr Kernel kKernels[] = {{"integers", integers},
+constexpr Kernel kKernels[] = {{kChain, integers},
                                {"multiplications", multiplications},
                                {"divisions", divisions},
                                {"lookups", lookups},

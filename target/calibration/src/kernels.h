@@ -13,4 +13,9 @@ struct Kernel {
 
 std::span<const Kernel> kernels();
 
+/// The kernel whose operations wait for each other, and how many cycles it takes at least. Its time
+/// shows the clock rate, which many machines do not report.
+inline constexpr const char* kChain = "integers";
+inline constexpr double kCyclesOfChain = 7 * 200'000;
+
 }  // namespace tether::calibration

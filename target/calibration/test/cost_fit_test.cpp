@@ -23,19 +23,22 @@ std::vector<CountedBlock> blocks_of(const Costs_ns& costs, std::size_t count, do
   return blocks;
 }
 
-constexpr Costs_ns kCosts_ns = {0.3, 1.1, 7.0, 0.5, 0.4, 0.6, 1.3, 1.7, 0.0, 11.0};
+constexpr Costs_ns kCosts_ns = {0.3, 1.1, 7.0, 0.5, 0.4, 0.6, 1.3, 1.7, 0.2, 11.0};
+constexpr Costs_ns kFloor_ns = {0.1, 0.1, 0.1, 0.1, 0.2, 0.2, 0.2, 0.2, 0.2, 2.0};
 
 TEST(CostFit, FindsTheCostsOfExactTimes) {
   const auto blocks = blocks_of(kCosts_ns, 15);
-  const Costs_ns fitted = fit_costs(blocks);
+  const Costs_ns fitted = fit_costs(blocks, kFloor_ns);
   for (std::size_t k = 0; k < kWorkClasses; ++k) EXPECT_NEAR(fitted[k], kCosts_ns[k], 1e-6) << k;
-  for (const double error : errors_when_left_out(blocks)) EXPECT_NEAR(error, 0.0, 1e-6);
+  for (const double error : errors_when_left_out(blocks, kFloor_ns)) EXPECT_NEAR(error, 0.0, 1e-6);
 }
 
-// Karush-Kuhn-Tucker: at the least sum no cost above 0 can improve it, and none at 0 by growing.
-TEST(CostFit, IsTheLeastWithoutNegativeCosts) {
+// Karush-Kuhn-Tucker: at the least sum no cost above its floor can improve it, and none at its
+// floor by growing.
+TEST(CostFit, IsTheLeastWithoutCostsBelowTheirFloor) {
   const auto blocks = blocks_of(kCosts_ns, 14, 0.3);
-  const Costs_ns fitted = fit_costs(blocks);
+  const Costs_ns fitted = fit_costs(blocks, kFloor_ns);
+  bool is_any_at_floor = false;
   for (std::size_t k = 0; k < kWorkClasses; ++k) {
     double slope = 0.0, scale = 0.0;
     for (const CountedBlock& block : blocks) {
@@ -43,22 +46,24 @@ TEST(CostFit, IsTheLeastWithoutNegativeCosts) {
       slope += relative_error(fitted, block) * share;
       scale += share;
     }
-    EXPECT_GE(fitted[k], 0.0);
+    EXPECT_GE(fitted[k], kFloor_ns[k]);
     EXPECT_GE(slope, -1e-9 * scale) << k;
-    if (fitted[k] > 0.0) {
+    if (fitted[k] > kFloor_ns[k]) {
       EXPECT_LE(slope, 1e-9 * scale) << k;
     }
+    is_any_at_floor = is_any_at_floor || fitted[k] == kFloor_ns[k];
   }
+  EXPECT_TRUE(is_any_at_floor);
 }
 
-TEST(CostFit, LeavesAKindAtZeroThatNoBlockHas) {
+TEST(CostFit, LeavesAKindAtItsFloorThatNoBlockHas) {
   auto blocks = blocks_of(kCosts_ns, 12);
   for (CountedBlock& block : blocks) {
     block.work[9] = 0.0;
     block.time_ns = predicted_ns(kCosts_ns, block);
   }
-  EXPECT_EQ(fit_costs(blocks)[9], 0.0);
-  EXPECT_THAT(errors_when_left_out(blocks), SizeIs(12));
+  EXPECT_EQ(fit_costs(blocks, kFloor_ns)[9], kFloor_ns[9]);
+  EXPECT_THAT(errors_when_left_out(blocks, kFloor_ns), SizeIs(12));
 }
 
 TEST(CostFit, ErrorIsRelativeToTheTime) {

@@ -5,6 +5,8 @@
 #include <utility>
 #include <variant>
 
+#include <unistd.h>
+
 #include <tether/client/simulated_vehicle.h>
 
 namespace tether::client {
@@ -19,6 +21,7 @@ link::Hello hello_for(const ConnectOptions& options) {
   hello.computing = options.time->computing();
   hello.token = options.token;
   hello.build_id = build_id();
+  hello.process = static_cast<std::uint32_t>(::getpid());
   hello.build = build_parts(own_arguments(), loaded_libraries());
   return hello;
 }

@@ -1,9 +1,13 @@
+#include "turns.h"
+
 #include <atomic>
 #include <cstdio>
 #include <cstring>
+#include <numeric>
 #include <string_view>
 
 #include <fcntl.h>
+#include <pthread.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -11,7 +15,7 @@
 #include <tether/counter/classify.h>
 
 /// A plugin of qemu-user: counts the work of the emulated program in the page that the program's
-/// client library reads. Counting is an addition per kind of work and translated block.
+/// client library reads. Counting is an addition for each translated block that begins.
 ///
 /// What it uses of QEMU's interface for plugins (version 1 of 4.2 and later) is declared here, for
 /// no package has the header.
@@ -62,66 +66,49 @@ constexpr int kAddU64 = 0;  // QEMU_PLUGIN_INLINE_ADD_U64
 
 CountPage* page = nullptr;
 bool is_arm = false;
-// Of this process: a forked child has its own.
-std::atomic<std::uint32_t> computing{0};
-std::atomic<unsigned> last_computing{0};
+/// Made at the start and never destroyed: threads use it until the process ends.
+Turns* turns = nullptr;
 
+void add(const qemu_plugin_insn* instruction, Work& work) {
+  const auto* bytes = static_cast<const std::uint8_t*>(qemu_plugin_insn_data(instruction));
+  if (is_arm) {
+    std::uint32_t word = 0;
+    std::memcpy(&word, bytes, sizeof word);
+    add_aarch64(word, work);
+  } else {
+    add_x86_64({bytes, qemu_plugin_insn_size(instruction)}, work);
+  }
+}
+
+std::uint64_t cost_of(const Work& work) {
+  return std::inner_product(work.begin(), work.end(), page->cost_units.begin(), std::uint64_t{0});
+}
+
+// One addition for each block. An addition after each instruction that can fault would count
+// exactly what is executed of a block, but makes the program run 1.4 times as long.
 void translated(qemu_plugin_id_t, qemu_plugin_tb* block) {
   Work work{};
   const std::size_t instructions = qemu_plugin_tb_n_insns(block);
-  for (std::size_t k = 0; k < instructions; ++k) {
-    const qemu_plugin_insn* instruction = qemu_plugin_tb_get_insn(block, k);
-    const auto* bytes = static_cast<const std::uint8_t*>(qemu_plugin_insn_data(instruction));
-    if (is_arm) {
-      std::uint32_t word = 0;
-      std::memcpy(&word, bytes, sizeof word);
-      add_aarch64(word, work);
-    } else {
-      add_x86_64({bytes, qemu_plugin_insn_size(instruction)}, work);
-    }
-  }
-  for (std::size_t kind = 0; kind < work.size(); ++kind)
-    if (work[kind] > 0)
-      qemu_plugin_register_vcpu_tb_exec_inline(block, kAddU64, &page->counts[kind], work[kind]);
-}
-
-void fail(CountFault fault) {
-  std::uint32_t none = 0;
-  page->fault.compare_exchange_strong(none, static_cast<std::uint32_t>(fault));
-}
-
-/// A thread leaves the kernel, or begins. In flight only one may compute, and while that one waits
-/// for a reply, no other.
-void computes(unsigned thread) {
-  const std::uint32_t others = computing.fetch_add(1);
-  page->computing.store(others + 1);
-  if (page->watched.load() == 0) return;
-  const bool is_other = thread != last_computing.load();
-  if (others > 0 || (is_other && page->held.load() != 0)) fail(CountFault::kThreads);
-  last_computing.store(thread);
+  for (std::size_t k = 0; k < instructions; ++k) add(qemu_plugin_tb_get_insn(block, k), work);
+  const auto add_to = [&](std::atomic<std::uint64_t>& sum, std::uint64_t amount) {
+    if (amount > 0) qemu_plugin_register_vcpu_tb_exec_inline(block, kAddU64, &sum, amount);
+  };
+  if (page->has_costs()) return add_to(page->units, cost_of(work));
+  for (std::size_t kind = 0; kind < work.size(); ++kind) add_to(page->counts[kind], work[kind]);
 }
 
 void began(qemu_plugin_id_t, unsigned thread) {
-  computes(thread);
+  turns->begins(thread);
 }
 
-/// A system call that starts a process, unless it starts a thread.
-bool starts_process(std::int64_t number, std::uint64_t flags) {
-  constexpr std::uint64_t kCloneThread = 0x10000;
-  if (number == (is_arm ? 220 : 56)) return (flags & kCloneThread) == 0;  // clone
-  return !is_arm && (number == 57 || number == 58);                       // fork, vfork
-}
-
-void enters_kernel(qemu_plugin_id_t, unsigned thread, std::int64_t number, std::uint64_t flags,
-                   std::uint64_t, std::uint64_t, std::uint64_t, std::uint64_t, std::uint64_t,
+void enters_kernel(qemu_plugin_id_t, unsigned thread, std::int64_t number, std::uint64_t first,
+                   std::uint64_t second, std::uint64_t, std::uint64_t, std::uint64_t, std::uint64_t,
                    std::uint64_t, std::uint64_t) {
-  if (page->watched.load() != 0 && starts_process(number, flags)) fail(CountFault::kProcess);
-  last_computing.store(thread);
-  page->computing.store(computing.fetch_sub(1) - 1);
+  turns->enters_kernel(thread, system_call(is_arm, number, first, second));
 }
 
-void leaves_kernel(qemu_plugin_id_t, unsigned thread, std::int64_t, std::int64_t) {
-  computes(thread);
+void leaves_kernel(qemu_plugin_id_t, unsigned thread, std::int64_t, std::int64_t result) {
+  turns->leaves_kernel(thread, result);
 }
 
 int refuse(const char* what, std::string_view subject) {
@@ -151,6 +138,9 @@ int install(qemu_plugin_id_t id, const qemu_info_t& info, std::string_view argum
   if (page->magic != CountPage::kMagic || page->version != CountPage::kVersion ||
       page->classes != kWorkClasses)
     return refuse("the page is of another version of Tether", argument);
+  turns = new Turns(*page);
+  ::pthread_atfork([] { turns->mutex().lock(); }, [] { turns->mutex().unlock(); },
+                   [] { turns->mutex().unlock(); });
   qemu_plugin_register_vcpu_init_cb(id, began);
   qemu_plugin_register_vcpu_tb_trans_cb(id, translated);
   qemu_plugin_register_vcpu_syscall_cb(id, enters_kernel);

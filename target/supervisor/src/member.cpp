@@ -14,6 +14,7 @@
 namespace tether::supervisor {
 namespace {
 
+using client::ClockState;
 using client::read_monotonic;
 
 constexpr Duration kConnectTimeout = std::chrono::seconds(10);
@@ -25,6 +26,7 @@ constexpr Duration kGrace = std::chrono::seconds(2);
 Member::Member(const Settings& settings, Started command, const client::SharedClockPage& clock,
                Say say)
     : settings_(settings),
+      clock_(clock),
       uav_(std::move(command.uav)),
       process_(command.process),
       callers_(std::move(command.listener), clock.descriptor),
@@ -144,7 +146,7 @@ void Member::on_message(link::Message message) {
   if (supervision_ && due != nullptr) {
     good = supervision_->heard(*due);
   } else if (supervision_ && reply != nullptr) {
-    good = supervision_->heard(std::move(*reply));
+    good = on_reply(std::move(*reply));
   } else {
     good = Failure{Failure::Kind::kProtocol,
                    "protocol violation: unexpected message from the coordinator"};
@@ -162,6 +164,14 @@ void Member::on_welcome(link::Welcome welcome) {
   joining_.over();
   welcome_ = std::move(welcome);
   for (const CallerId caller : std::exchange(waiting_, {})) callers_.send(caller, *welcome_);
+}
+
+// In free running, each reply tells ST.
+Status Member::on_reply(link::Reply reply) {
+  const ClockState st{reply.resume_at, read_monotonic(), clock_rate(), true};
+  const Status good = supervision_->heard(std::move(reply));
+  if (good && welcome_->free_running) clock_.page->publish(st);
+  return good;
 }
 
 void Member::send_outgoing() {

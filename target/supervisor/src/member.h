@@ -43,6 +43,10 @@ class Member {
   /// From the Welcome on.
   Supervision* supervision() { return supervision_ ? &*supervision_ : nullptr; }
   const link::Welcome& welcome() const { return *welcome_; }
+  /// Of ET, per second of this machine. @pre as welcome()
+  double clock_rate() const {
+    return welcome_->free_running ? welcome_->real_time_factor : settings_.factor;
+  }
   const Joining& joining() const { return joining_; }
 
   /// Adds the descriptors to poll; `runs`: the group does. While it is stopped, it sends nothing.
@@ -74,9 +78,11 @@ class Member {
   void connect(const link::Hello& hello);
   void on_message(link::Message message);
   void on_welcome(link::Welcome welcome);
+  Status on_reply(link::Reply reply);
   void lose_coordinator(const Failure& failure);
 
   const Settings& settings_;
+  const client::SharedClockPage& clock_;
   std::string uav_;
   pid_t process_;
   Callers callers_;

@@ -49,7 +49,10 @@ void Supervision::forward(Asked asked, ExecTime latest) {
   Open open;
   open.caller = asked.caller;
   open.callers_sequence = std::exchange(request.sequence, ++sequence_);
-  request.issued_at = std::max(std::min(request.issued_at, latest), last_sent_);
+  const ExecTime stamp = request.issued_at;
+  request.issued_at = std::max(std::min(stamp, latest), last_sent_);
+  if (auto* sleep = std::get_if<link::Sleep>(&request.body); sleep && sleep->is_relative)
+    sleep->until += request.issued_at - stamp;
   open.issued_at = last_sent_ = request.issued_at;
   open.finishes = std::holds_alternative<link::Finish>(request.body);
   open.receives = std::holds_alternative<link::ReceiveMessage>(request.body);

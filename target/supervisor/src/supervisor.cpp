@@ -249,7 +249,7 @@ void Supervisor::begin() {
     const Duration now = read_monotonic();
     progress_period_ = welcome.free_running ? kHeartbeatPeriod : kProgressPeriod;
     next_progress_ = now + progress_period_;
-    around_.clock.page->publish({welcome.start, now, settings_.factor, true});
+    around_.clock.page->publish({welcome.start, now, member->clock_rate(), true});
     has_begun_ = true;
   }
 }

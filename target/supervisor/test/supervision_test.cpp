@@ -216,6 +216,18 @@ TEST_F(SupervisionTest, RefusesMessagesThatBreakTheProtocol) {
   EXPECT_TRUE(group_.heard(Reply{1, et(10ms), std::nullopt}).ok());
 }
 
+TEST(FreeSupervision, ShortensNoRelativeSleepWhenItRaisesAStamp) {
+  Supervision group(true, et(0ms));
+  group.progressed(et(20ms));
+  group.asked(1, request(19ms, link::Sleep{et(49ms), true}));
+  group.asked(2, request(19ms, link::Sleep{et(49ms)}));
+  const auto sent = all<Request>(group.take_outgoing());
+  ASSERT_EQ(sent.size(), 2u);
+  EXPECT_EQ(sent[0].issued_at, et(20ms));
+  EXPECT_EQ(std::get<link::Sleep>(sent[0].body).until, et(50ms));
+  EXPECT_EQ(std::get<link::Sleep>(sent[1].body).until, et(49ms));
+}
+
 TEST(FreeSupervision, PassesEverythingThroughAndNeverStops) {
   Supervision group(true, et(0ms));
   group.asked(1, request(10ms));

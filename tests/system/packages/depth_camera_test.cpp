@@ -33,11 +33,8 @@ class DepthCamera : public testing::Test {
   static void TearDownTestSuite() { folder_.reset(); }
 
   static fs::path scenario(const std::vector<Substitution>& changes = {}) {
-    const std::string data = "\"" + std::string(TETHER_SOURCE_DIR) + "/data/worlds";
     const fs::path example = *folder_ / "example", file = example / "own.toml";
-    write_text(file, substituted(substituted(read_text(example / "approach.toml"),
-                                             {{"\"../../data/worlds", data}}),
-                                 changes));
+    write_text(file, substituted(read_text(example / "approach.toml"), changes));
     return file;
   }
   static fs::path flown(const std::string& program, const std::vector<std::string>& options = {}) {

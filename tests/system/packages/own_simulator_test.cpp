@@ -30,10 +30,6 @@ class OwnSimulator : public testing::Test {
 
   OwnSimulator() {
     std::filesystem::copy(kSource + "/examples/own-simulator", example_);
-    const auto file = example_ / "face_anchor.toml";
-    write_text(file, substituted(read_text(file),
-                                 {{"\"../../data/models", "\"" + kSource + "/data/models"},
-                                  {"\"../../data/profiles", "\"" + kSource + "/data/profiles"}}));
     simulator_ = std::make_unique<Process>(
         Command{{*built_ / "own-simulator/build/own_simulator", folder_ / "yard.sock"}});
     EXPECT_TRUE(simulator_->wait_for_out(address_, 30s));

@@ -34,14 +34,10 @@ class OwnSut : public testing::TestWithParam<const char*> {
   /// Flies the program that was built so, with changes to its scenario.
   static void expect_goal(const std::string& builder, const std::string& condition = "scripted",
                           const std::vector<Substitution>& changes = {}) {
-    const std::string data = "\"" + std::string(TETHER_SOURCE_DIR) + "/data/";
     const auto example = *folder_ / builder, file = example / "own.toml", out = example / "out";
     const std::string text =
         substituted(read_text(example / "face_anchor.toml"),
-                    {{"\"../../data/worlds", data + "worlds"},
-                     {"\"../../data/models", data + "models"},
-                     {"\"../../data/profiles", data + "profiles"},
-                     {"build/face_anchor_cpp\"", std::string(GetParam()) + "\""}});
+                    {{"build/face_anchor_cpp\"", std::string(GetParam()) + "\""}});
     write_text(file, substituted(text, changes));
     const Output output =
         run(tether({"run", file, "--condition", condition, "--quiet", "--force", "--out", out}),

@@ -3,6 +3,7 @@
 // Every mode but those of the start first flies in small steps for 1.5 s of its time.
 // kill_PHASE and stop_PHASE: SIGKILL or SIGSTOP strikes it there.
 #include <atomic>
+#include <condition_variable>
 #include <csignal>
 #include <cstdint>
 #include <cstdio>
@@ -10,16 +11,20 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
+#include <poll.h>
 #include <sys/ioctl.h>
 #include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <tether/client/simulated_vehicle.h>
@@ -92,6 +97,25 @@ void fly(Vehicle& vehicle, int steps) {
     require(range ? tether::ok_status() : tether::Status(range.failure()));
     require(vehicle.annotate("step", "{\"i\": " + std::to_string(i) + "}"));
     require(vehicle.sleep_for(3ms));
+  }
+}
+
+// Every kind of call, on the way down to the floor.
+void fly_down(Vehicle& vehicle, bool exchanges) {
+  require(vehicle.command_velocity({.velocity_H_m_s = {0.4, 0.0, -1.0}, .yaw_rate_rad_s = 0.3}));
+  const std::vector<std::uint8_t> bytes(200);
+  for (int i = 0; i < 60; ++i) {
+    require(vehicle.begin_stage("read"));
+    if (vehicle.catalogue().battery_capacity_C > 0.0) {
+      const auto battery = vehicle.read_battery();
+      require(battery ? tether::ok_status() : tether::Status(battery.failure()));
+    }
+    require(vehicle.end_stage());
+    if (exchanges) {
+      require(vehicle.send("", bytes));
+      (void)vehicle.receive(4ms);
+    }
+    require(vehicle.sleep_for(20ms));
   }
 }
 
@@ -238,6 +262,52 @@ void leave_children() {
   _exit(0);
 }
 
+void compute(std::chrono::milliseconds cpu_time) {
+  timespec begin{}, now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &begin);
+  do {
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  } while (std::chrono::seconds(now.tv_sec - begin.tv_sec) +
+               std::chrono::nanoseconds(now.tv_nsec - begin.tv_nsec) <
+           cpu_time);
+}
+
+// In each way for 60 ms. All but the call, and the computing of 60 ms, is hidden from the
+// simulator.
+int wait_in_every_way(Vehicle& v) {
+  std::condition_variable never;
+  std::mutex mutex;
+  std::unique_lock lock(mutex);
+  never.wait_for(lock, 60ms);
+  for (int i = 0; i < 10; ++i) poll(nullptr, 0, 6);
+  std::thread([] { std::this_thread::sleep_for(60ms); }).join();
+  const pid_t child = fork();
+  if (child == 0) {
+    std::this_thread::sleep_for(60ms);
+    _exit(0);
+  }
+  waitpid(child, nullptr, 0);
+  for (int i = 0; i < 60; ++i) {
+    require(v.sleep_for(1ms));
+    compute(1ms);
+    std::this_thread::sleep_for(1ms);
+  }
+  std::this_thread::sleep_for(60ms);  // and finishes
+  return finish(v, true);
+}
+
+// Computes 400 ms on this thread and on short-lived ones, one at a time or `together`.
+int compute_on_threads(Vehicle& v, bool together) {
+  for (int i = 0; i < 20; ++i) {
+    std::thread other([] { compute(10ms); });
+    if (!together) other.join();
+    compute(10ms);
+    if (together) other.join();
+    require(v.sleep_for(1ms));
+  }
+  return finish(v, true);
+}
+
 const std::map<std::string, std::function<int(Vehicle&)>> kFlyingModes = {
     {"good", [](Vehicle& v) { return finish(v, true); }},
     {"latest",
@@ -256,6 +326,19 @@ const std::map<std::string, std::function<int(Vehicle&)>> kFlyingModes = {
        require(v.sleep_for(2s));
        return finish(v, true);
      }},
+    {"fly_down",
+     [](Vehicle& v) {
+       fly_down(v, false);
+       return finish(v, true);
+     }},
+    {"exchange",
+     [](Vehicle& v) {
+       fly_down(v, true);
+       return finish(v, true);
+     }},
+    {"wait", wait_in_every_way},
+    {"in_turn", [](Vehicle& v) { return compute_on_threads(v, false); }},
+    {"together", [](Vehicle& v) { return compute_on_threads(v, true); }},
     {"missed", [](Vehicle& v) { return finish(v, false); }},
     {"crash", [](Vehicle&) -> int { crash(); }},
     {"stop", [](Vehicle&) { return std::raise(SIGSTOP); }},

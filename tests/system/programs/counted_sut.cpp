@@ -7,16 +7,20 @@
 //   meanwhile  a thread computes while the program waits for a reply
 //   from_start a thread has computed since before it joined
 //   process    starts a process
+//   hands_over computes on a thread and waits for it: by a condition variable, pipes and futures
+//   daemon     leaves a process behind before it joins, which computes when the program asks it
 //   endless    computes for ever after its flight
 //   native     runs itself again, without the emulator
 #include <condition_variable>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <future>
 #include <mutex>
 #include <string>
 #include <thread>
 
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <tether/client/simulated_vehicle.h>
@@ -80,6 +84,73 @@ class Worker {
   std::chrono::milliseconds pause_{0};
 };
 
+/// Computes when it is asked, and answers.
+void serve(int requests, int answers) {
+  for (char byte = 0; read(requests, &byte, 1) == 1;) {
+    work(200'000);
+    if (write(answers, &byte, 1) != 1) return;
+  }
+}
+
+/// A thread or a process, by two pipes.
+class Server {
+ public:
+  Server() {
+    if (pipe(requests_) != 0 || pipe(answers_) != 0) std::_Exit(3);
+  }
+  void serve_here() { serve(requests_[0], answers_[1]); }
+  void ask() {
+    char byte = 1;
+    if (write(requests_[1], &byte, 1) != 1 || read(answers_[0], &byte, 1) != 1) std::_Exit(3);
+  }
+
+ private:
+  int requests_[2] = {}, answers_[2] = {};
+};
+
+/// Work that several threads do, never two at a time.
+class HandOver {
+ public:
+  HandOver() {
+    std::thread([this] { server_.serve_here(); }).detach();
+    std::thread([this] {
+      for (std::unique_lock lock(mutex_);;) {
+        changed_.wait(lock, [this] { return is_turn_of_worker_; });
+        work(20'000);
+        is_turn_of_worker_ = false;
+        changed_.notify_all();
+      }
+    }).detach();
+  }
+  void work_once() {
+    server_.ask();
+    std::async(std::launch::async, [] { work(20'000); }).get();
+    std::unique_lock lock(mutex_);
+    is_turn_of_worker_ = true;
+    changed_.notify_all();
+    changed_.wait(lock, [this] { return !is_turn_of_worker_; });
+  }
+
+ private:
+  Server server_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  bool is_turn_of_worker_ = false;
+};
+
+/// Forks twice, so that the process is no child of this one.
+Server& leave_daemon() {
+  static Server server;
+  if (const pid_t child = fork(); child > 0) {
+    waitpid(child, nullptr, 0);
+    return server;
+  }
+  if (fork() > 0) std::_Exit(0);
+  setsid();
+  server.serve_here();
+  std::_Exit(0);
+}
+
 void fly(Vehicle& vehicle, std::uint64_t tenths) {
   for (std::uint64_t i = 0; i < 100; ++i) {
     {
@@ -106,10 +177,23 @@ int main(int argc, char** argv) {
   }
   static Worker worker(100'000);  // never ends
   if (mode == "from_start") worker.wake(0ms);
+  Server* const daemon = mode == "daemon" ? &leave_daemon() : nullptr;
+  HandOver* const hand_over = mode == "hands_over" ? new HandOver : nullptr;  // never ends
   const auto vehicle = join();
   if (mode == "at_once") worker.wake(0ms);
   if (mode == "meanwhile") worker.wake(20ms);
   if (mode == "process" && std::system("true") != 0) return 4;
+  for (int i = 0; i < 30 && hand_over; ++i) {
+    hand_over->work_once();
+    require(vehicle->sleep_for(3ms));
+  }
+  const auto before = vehicle->now();
+  for (int i = 0; i < 300 && daemon; ++i) daemon->ask();
+  // Of 60 million steps.
+  if (daemon && vehicle->now() - before < 40ms) {
+    std::fprintf(stderr, "counted_sut: the daemon computed in no time\n");
+    return 5;
+  }
   fly(*vehicle, mode == "slower" ? 12 : 10);
   // Meets the worker's next waking.
   if (mode == "meanwhile")

@@ -78,8 +78,7 @@ TEST(Demo, FliesTheTableOfTheReadme) {
   const TempFolder folder;
   write_text(folder / "demo.toml",
              substituted(read_text(TETHER_SOURCE_DIR "/data/campaigns/demo.toml"),
-                         {{", \"target, no sync\"]", "]"},
-                          {"../scenarios", TETHER_SOURCE_DIR "/data/scenarios"}}));
+                         {{", \"target, no sync\"]", "]"}}));
   const Output flown =
       run(with(tether({"campaign", folder / "demo.toml", "--out", folder / "out", "--jobs", "2"}),
                {}, {{"COLUMNS", "200"}}),

@@ -54,7 +54,7 @@ TEST_F(CountedRun, IsTheSameToTheByte) {
     const std::vector<Spinner> load(static_cast<std::size_t>(spinners));
     const auto again = folder_ / ("again_with_load_of_" + std::to_string(spinners));
     Command command = counted("good", again);
-    command.environment.emplace_back("ANOTHER", std::string(1000, 'x'));
+    command.environment.emplace_back("ANOTHER", std::string(1001, 'x'));
     ASSERT_EQ(run(command).code, 0);
     EXPECT_EQ(read_text(again / "record.mcap"), read_text(out_ / "record.mcap"));
     EXPECT_EQ(timeless_result(again), timeless_result(out_));
@@ -76,6 +76,15 @@ TEST_F(CountedRun, MayHaveThreadsThatOnlyWait) {
   EXPECT_EQ(run(counted("waiter")).code, 0);
 }
 
+TEST_F(CountedRun, MayHandWorkToThreadsAndWaitForThem) {
+  for (const int spinners : {0, 3}) {
+    const std::vector<Spinner> load(static_cast<std::size_t>(spinners));
+    const auto out = folder_ / std::to_string(spinners);
+    ASSERT_EQ(run(counted("hands_over", out)).code, 0) << read_text(out / "sut-uav1.log");
+  }
+  EXPECT_EQ(read_text(folder_ / "0" / "record.mcap"), read_text(folder_ / "3" / "record.mcap"));
+}
+
 TEST_F(CountedRun, EndsWhenWorkIsNotCounted) {
   const auto expect_end = [&](const std::string& mode, const std::string& reason) {
     SCOPED_TRACE(mode);
@@ -88,7 +97,16 @@ TEST_F(CountedRun, EndsWhenWorkIsNotCounted) {
   expect_end("meanwhile", "several threads of the program compute at the same time");
   expect_end("from_start", "several threads of the program compute at the same time");
   expect_end("process", "the program started a process");
+  expect_end("daemon", "the program started a process");
   expect_end("native", "do not advance");
+}
+
+// A process that the program left behind before it joined.
+TEST_F(CountedRun, ChargesDaemonsUnderACpuClock) {
+  const auto scenario = write_hover_scenario(folder_.path(), "daemon",
+                                             {{bad_sut_program().string(), COUNTED_SUT_PROGRAM}});
+  EXPECT_EQ(run(tether({"run", scenario, "--out", out_, "--quiet"}, mark_)).code, 0)
+      << read_text(out_ / "sut-uav1.log");
 }
 
 // The run does not wait for it.

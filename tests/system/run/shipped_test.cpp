@@ -103,7 +103,6 @@ std::vector<Flight> shipped_flights(bool each_change) {
 
 /// Without furniture and pictures, which take longer to load than the flight takes.
 void write_bare_worlds(const std::filesystem::path& folder) {
-  std::filesystem::remove(folder);  // the link to those that are shipped
   std::filesystem::create_directory(folder);
   const std::regex unneeded("<include>[^]*?</include>|<albedo_map>[^<]*</albedo_map>");
   for (const auto& world : std::filesystem::directory_iterator(TETHER_SOURCE_DIR "/data/worlds"))
@@ -122,11 +121,16 @@ Landed fly(const Flight& flight) {
       {"\ntime_limit_s = ",  // emulated programs start slowly
        fmt::format("\nconnect_limit_s = 170\ntime_limit_s = {}  # ", flight.limit_s)}};
   const auto original = read_text(TETHER_SOURCE_DIR "/data/scenarios/" + flight.scenario + ".toml");
-  const std::string mission =
-      "\nmission = ";  // without clauses: their deadlines are beyond limit_s
-  for (auto at = original.find(mission); at != std::string::npos;
-       at = original.find(mission, at + 1))
-    changes.emplace_back(mission, "\nfiles.mission = ");
+  // The bare world, and missions without clauses: their deadlines are beyond limit_s.
+  const std::regex named("\n(world|mission) = \"(\\w+)\"");
+  for (std::sregex_iterator at(original.begin(), original.end(), named), end; at != end; ++at) {
+    const std::string name = at->str(2);
+    changes.emplace_back(at->str(), at->str(1) == "world"
+                                        ? "\nworld = \"../worlds/" + name + ".sdf\""
+                                        : "\nfiles.mission = \"" TETHER_SOURCE_DIR
+                                          "/data/missions/" +
+                                              name + ".toml\"");
+  }
   if (flight.concurrent) changes.emplace_back("[sut]", "[sut]\nconcurrent = true");
   const auto file = write_shipped_scenario(folder.path(), flight.scenario, changes);
   write_bare_worlds(folder / "worlds");

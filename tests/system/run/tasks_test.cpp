@@ -79,7 +79,7 @@ TEST(Inspection, AComputerThatIsTooSlowMissesAClause) {
         folder / "mission.toml",
         substituted(mission, {{"duration_s = 32", "duration_s = " + std::to_string(looking_s)}}));
     const auto result = fly(folder, "inspect_room", computing_ms, code,
-                            {{"../missions/inspect_room.toml", "../mission.toml"}});
+                            {{"\"inspect_room\"\n\n", "\"../mission.toml\"\n\n"}});
     EXPECT_TRUE(result["audit"]["passed"]) << result["audit"]["summary"];
     std::vector<std::string> missed;
     for (const auto& clause : result["clauses"])

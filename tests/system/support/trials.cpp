@@ -63,12 +63,10 @@ std::filesystem::path hover_world() {
 std::filesystem::path write_shipped_scenario(const std::filesystem::path& folder,
                                              const std::string& name,
                                              const std::vector<Substitution>& substitutions) {
-  const std::filesystem::path sources = TETHER_SOURCE_DIR "/data";
-  for (const char* data : {"worlds", "models", "profiles", "missions", "energy"})
-    std::filesystem::create_directory_symlink(sources / data, folder / data);
+  const std::filesystem::path sources = TETHER_SOURCE_DIR "/data/scenarios";
   const auto file = folder / "scenarios" / (name + ".toml");
   std::filesystem::create_directory(file.parent_path());
-  write_text(file, substituted(read_text(sources / "scenarios" / (name + ".toml")), substitutions));
+  write_text(file, substituted(read_text(sources / (name + ".toml")), substitutions));
   return file;
 }
 

@@ -28,8 +28,8 @@ std::filesystem::path write_hover_scenario(const std::filesystem::path& folder,
 /// The hover scenario's world.
 std::filesystem::path hover_world();
 
-/// data/scenarios/NAME.toml as it is shipped, with the substitutions made, in a tree of its own
-/// below `folder`, so that the paths in it hold.
+/// data/scenarios/NAME.toml as it is shipped, with the substitutions made:
+/// FOLDER/scenarios/NAME.toml.
 std::filesystem::path write_shipped_scenario(const std::filesystem::path& folder,
                                              const std::string& name,
                                              const std::vector<Substitution>& substitutions = {});

@@ -55,6 +55,13 @@ void members(auto& io, Maybe<BatteryReading> auto& m) {
   io("charge", m.charge);
 }
 
+void velocity_members(auto& io, auto& m) {
+  io("vx_H_m_s", m.vx_H_m_s);
+  io("vy_H_m_s", m.vy_H_m_s);
+  io("vz_H_m_s", m.vz_H_m_s);
+  io("yaw_rate_rad_s", m.yaw_rate_rad_s);
+}
+
 void members(auto& io, Maybe<Interaction> auto& m) {
   io("uav", m.uav);
   io("sequence", m.sequence);
@@ -76,6 +83,8 @@ void members(auto& io, Maybe<Interaction> auto& m) {
   if (io.has("seen_anchors", m.seen_anchors.has_value()))
     io.list("seen_anchors", io.value_of(m.seen_anchors));
   io.optional("effect_at_ns", m.effect_at);
+  if (io.has("command", m.command.has_value()))
+    io.object("command", [&](auto& command) { velocity_members(command, io.value_of(m.command)); });
   io.optional("sleep_until_ns", m.sleep_until);
   io.optional("receive_until_ns", m.receive_until);
   if (io.has("received", m.received.has_value()))
@@ -104,10 +113,7 @@ void members(auto& io, Maybe<CommandEffect> auto& m) {
   io("uav", m.uav);
   io("sequence", m.sequence);
   io("applied_at_ns", m.applied_at);
-  io("vx_H_m_s", m.vx_H_m_s);
-  io("vy_H_m_s", m.vy_H_m_s);
-  io("vz_H_m_s", m.vz_H_m_s);
-  io("yaw_rate_rad_s", m.yaw_rate_rad_s);
+  velocity_members(io, m);
 }
 
 void members(auto& io, Maybe<GroundTruth> auto& m) {
@@ -171,6 +177,11 @@ void members(auto& io, Maybe<Margin> auto& m) {
   io("unit", m.unit);
 }
 
+void members(auto& io, Maybe<TopicCount> auto& m) {
+  io("topic", m.topic);
+  io("messages", m.messages);
+}
+
 void members(auto& io, Maybe<Clearance> auto& m) {
   io("uav", m.uav);
   io("min_m", m.min_m);
@@ -199,6 +210,22 @@ void members(auto& io, Maybe<ReplayInfo> auto& m) {
   io("build_id", m.build_id);
 }
 
+void members(auto& io, Maybe<ChargeVoltage> auto& m) {
+  io("charge", m.charge);
+  io("voltage_v", m.voltage_V);
+}
+
+void members(auto& io, Maybe<EnergyInfo> auto& m) {
+  io.positive("capacity_c", m.capacity_C);
+  io("resistance_ohm", m.resistance_ohm);
+  io("initial_charge", m.initial_charge);
+  io.list("voltage_at_charge", m.voltage_at_charge);
+  io("lift_w", m.lift_W);
+  io("idle_w", m.idle_W);
+  io("busy_core_w", m.busy_core_W);
+  io("sensors_w", m.sensors_W);
+}
+
 void members(auto& io, Maybe<BuildPart> auto& m) {
   io("name", m.name);
   io("value", m.value);
@@ -224,6 +251,11 @@ void members(auto& io, Maybe<SutInfo> auto& m) {
   if (io.has("replay", m.replay.has_value()))
     io.object("replay", [&](auto& replay) { members(replay, io.value_of(m.replay)); });
   if (io.has("computer", !m.computer.empty())) io("computer", m.computer);
+  if (io.has("extent_m", m.extent_m > 0.0)) io.positive("extent_m", m.extent_m);
+  if (io.has("max_angular_acceleration_rad_s2", m.max_angular_acceleration_rad_s2 > 0.0))
+    io.positive("max_angular_acceleration_rad_s2", m.max_angular_acceleration_rad_s2);
+  if (io.has("energy", m.energy.has_value()))
+    io.object("energy", [&](auto& energy) { members(energy, io.value_of(m.energy)); });
   if (!io.has("board", !m.board.empty())) return;
   io("board", m.board);
   if (io.has("pinned_core", m.pinned_core.has_value()))
@@ -285,6 +317,29 @@ void members(auto& io, Maybe<WorkCost> auto& m) {
   io("ns", m.ns);
 }
 
+/// Those of "log_distance" only with that model.
+void radio_members(auto& io, Maybe<RadioInfo> auto& m) {
+  io("radio", m.model);
+  io("radio_least_delay_ns", m.least_delay);
+  io("radio_data_rate_bit_s", m.data_rate_bit_s);
+  if (!io.has("radio_inbox_messages", m.inbox_messages > 0)) return;
+  io("radio_inbox_messages", m.inbox_messages);
+  if (!io.has("radio_access", !m.access.empty())) return;
+  io("radio_access", m.access);
+  io("radio_queue_messages", m.queue_messages);
+  io("radio_header_bytes", m.header_bytes);
+  io("radio_delay_ns", m.delay);
+  io("radio_preamble_ns", m.preamble);
+  io("radio_slot_ns", m.slot);
+  io("radio_bandwidth_hz", m.bandwidth_hz);
+  io("radio_tx_power_dbm", m.tx_power_dbm);
+  io("radio_noise_figure_db", m.noise_figure_db);
+  io("radio_reference_loss_db", m.reference_loss_db);
+  io("radio_exponent", m.exponent);
+  io("radio_shadowing_db", m.shadowing_db);
+  io("radio_wall_loss_db", m.wall_loss_db);
+}
+
 /// All but the target.
 void members(auto& io, Maybe<Header> auto& m) {
   io("schema_version", m.schema_version);
@@ -298,17 +353,16 @@ void members(auto& io, Maybe<Header> auto& m) {
   io("step_ns", m.step);
   io("ground_truth_period_ns", m.ground_truth_period);
   io("real_time_factor", m.real_time_factor);
+  if (io.has("time_limit_ns", m.time_limit > Duration(0))) io("time_limit_ns", m.time_limit);
   io.list("suts", m.suts);
   io.list("sensors", m.sensors);
   io.list("anchors", m.anchors);
   if (io.has("wall_at_start_ns", m.wall_at_start != WallTime{}))
     io("wall_at_start_ns", m.wall_at_start);
   io.flag("reports_contacts", m.reports_contacts);
-  if (io.has("radio", !m.radio.model.empty())) {
-    io("radio", m.radio.model);
-    io("radio_least_delay_ns", m.radio.least_delay);
-    io("radio_data_rate_bit_s", m.radio.data_rate_bit_s);
-  }
+  io.flag("only_uavs_move", m.only_uavs_move);
+  io.flag("moves_by_forces", m.moves_by_forces);
+  if (io.has("radio", !m.radio.model.empty())) radio_members(io, m.radio);
   if (io.has("boards", !m.boards.empty())) io.list("boards", m.boards);
   if (!io.has("emulator", !m.emulator.program.empty())) return;
   io("emulator", m.emulator.program);
@@ -329,6 +383,7 @@ void members(auto& io, Maybe<Footer> auto& m) {
   io("largest_grid_error_ns", m.largest_grid_error);
   if (io.has("clearances", !m.clearances.empty())) io.list("clearances", m.clearances);
   if (io.has("expelled", !m.expelled.empty())) io.list("expelled", m.expelled);
+  if (io.has("topics", !m.topics.empty())) io.list("topics", m.topics);
   if (!io.has("stops", m.stops > 0)) return;
   io("stops", m.stops);
   io("largest_overshoot_ns", m.largest_overshoot);

@@ -40,6 +40,17 @@ const Schema kInteractionSchema{"tether.Interaction", R"json({
       }
     },
     "effect_at_ns": {"type": "integer", "description": "first step boundary the command acts on"},
+    "command": {
+      "type": "object",
+      "description": "the velocity that was asked for, in the heading frame H",
+      "properties": {
+        "vx_H_m_s": {"type": "number"},
+        "vy_H_m_s": {"type": "number"},
+        "vz_H_m_s": {"type": "number"},
+        "yaw_rate_rad_s": {"type": "number"}
+      },
+      "required": ["vx_H_m_s", "vy_H_m_s", "vz_H_m_s", "yaw_rate_rad_s"]
+    },
     "sleep_until_ns": {"type": "integer", "description": "ET at which the SUT asked to be woken"},
     "receive_until_ns": {"type": "integer", "description": "ET of the request + timeout"},
     "received": {

@@ -48,8 +48,9 @@ class InputFile {
     }
     if (!stream_.is_open() || error) {
       require_a_handle_for(path.string());
-      const std::string why = error                                  ? error.message()
-                              : errno != 0                           ? reason_of(errno)
+      const std::string why = error                                        ? error.message()
+                              : errno != 0                                 ? reason_of(errno)
+                              : std::filesystem::is_directory(path, error) ? "it is a folder"
                               : std::filesystem::exists(path, error) ? "it is not a regular file"
                                                                      : "there is no such file";
       throw Error(ErrorCode::kBadFile, FileLocation{path.string(), 0},

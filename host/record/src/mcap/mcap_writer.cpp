@@ -79,7 +79,7 @@ std::uint16_t McapWriter::add_schema(std::string_view name, std::string_view enc
 
 std::uint16_t McapWriter::add_channel(std::string_view topic, std::uint16_t schema,
                                       std::string_view message_encoding) {
-  channel_states_.emplace_back();
+  channel_states_.emplace_back().topic = topic;
   const auto id = static_cast<std::uint16_t>(channel_states_.size());
   std::string content;
   append_u16(content, id);
@@ -135,6 +135,12 @@ void McapWriter::add_metadata(std::string_view name, const StringMap& values) {
   ++metadata_count_;
   write_record(Opcode::kMetadata, content);
   file_.end_part();
+}
+
+std::vector<TopicCount> McapWriter::counts() const {
+  std::vector<TopicCount> counts;
+  for (const ChannelState& state : channel_states_) counts.push_back({state.topic, state.messages});
+  return counts;
 }
 
 // Where a chunk ends depends on its messages alone, not on when it was flushed.

@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include <tether/record/messages.h>
+
 namespace tether::record {
 
 /// When a chunk of messages goes to the file: whichever comes first.
@@ -42,6 +44,9 @@ class McapWriter {
   /// Goes straight to the file, after all messages so far.
   void add_metadata(std::string_view name, const StringMap& values);
 
+  /// The messages of each channel so far, in the order of channels.
+  std::vector<TopicCount> counts() const;
+
   /// Hands the open chunk to the system, and keeps it open.
   void flush();
   /// Closes data section and file: the last call.
@@ -53,6 +58,7 @@ class McapWriter {
     std::uint64_t offset;
   };
   struct ChannelState {
+    std::string topic;
     std::uint32_t sequence = 0;
     std::uint64_t messages = 0;
     std::vector<IndexEntry> index;  ///< of the open chunk

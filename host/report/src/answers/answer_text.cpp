@@ -41,7 +41,8 @@ std::string answer_text(const std::vector<Answer>& answers, const std::vector<st
 
 std::string verdict_text(const std::vector<Verdict>& verdicts, Markup markup) {
   const auto groups = by_scenario(verdicts);
-  std::string text;
+  const std::vector<Answer> headlines = headlines_of(groups);
+  std::string text = headlines.empty() ? "" : answer_text(headlines, {}, markup);
   for (const std::vector<Verdict>& points : groups) {
     if (groups.size() > 1)
       text += fmt::format("{}{}\n\n", markup == Markup::kMarkdown ? "## " : "",

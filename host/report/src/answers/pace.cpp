@@ -152,6 +152,11 @@ bool Pace::keeps_up() const {
   return offered_hz && read_hz >= kNearlyEvery * *offered_hz;
 }
 
+bool Pace::is_too_slow_for_camera() const {
+  const std::optional<double> room = headroom();
+  return room && *room < 1.0 && !keeps_up();
+}
+
 std::optional<Pace> pace_of(const record::Record& record) {
   if (record.header.policy != record::kConservativeBarrier) return std::nullopt;
   std::vector<Pace> paces;
@@ -163,6 +168,11 @@ std::optional<Pace> pace_of(const record::Record& record) {
   Pace found = *slowest;
   found.boards = board_paces(record, paces);
   found.speed = speed_of(record.header);
+  found.has_radio = !record.header.radio.model.empty();
+  found.messages = record.radio.size();
+  found.messages_arrived = static_cast<std::size_t>(std::ranges::count(
+      record.radio, record::kDelivered,
+      [](const auto& logged) { return std::string_view(logged.message.outcome); }));
   return found;
 }
 

@@ -1,3 +1,5 @@
+#include "tables/report_format.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -5,7 +7,10 @@
 
 #include <fmt/format.h>
 
+#include <tether/base/counted.h>
 #include <tether/campaign/campaign_plan.h>
+#include <tether/campaign/copies.h>
+#include <tether/campaign/statistics.h>
 #include <tether/report/size_report.h>
 
 namespace tether::report {
@@ -41,14 +46,19 @@ std::string than(double slowdown) {
 Answer main_answer(const SizeReport& report) {
   const SizedCondition& sized = report.synchronised;
   const sizing::Threshold& threshold = sized.answer.threshold;
-  const std::string evidence =
-      fmt::format("{}; {} flights.", percent(report.question.confidence), sized.flights.size());
-  if (sized.answer.is_below)
-    return {"Not sufficient",
+  const std::string evidence = fmt::format("{}; {}.", percent(report.question.confidence),
+                                           counted(sized.flights.size(), "flight"));
+  if (sized.answer.is_below) {
+    const bool is_for_speed = speed_matters(sized);
+    return {is_for_speed ? "Not sufficient" : "Goal missed",
             fmt::format(": already at {} × the time of “{}”, fewer than {} of the flights reach "
-                        "the goal, {}",
+                        "the goal, {}{}",
                         digits(report.question.least), sized.condition,
-                        percent(report.question.success), evidence)};
+                        percent(report.question.success), evidence,
+                        is_for_speed ? ""
+                                     : " Whether speed is the reason is not known: the faster ones "
+                                       "do not reach it more often.")};
+  }
   if (sized.answer.is_above)
     return {"Sufficient up to " + slower(report.question.most),
             fmt::format(" {} “{}”, the most that was flown, {}", than(report.question.most),
@@ -58,10 +68,11 @@ Answer main_answer(const SizeReport& report) {
                       interval_text(threshold, report.question), evidence)};
 }
 
-Answer board_answer(const Board& board, const sizing::Answer& answer) {
+Answer board_answer(const Board& board, const SizedCondition& sized) {
+  const sizing::Answer& answer = sized.answer;
   const double headroom = answer.threshold.estimate / board.slowdown;
   const std::string name = fmt::format("{} ({} ×)", board.name, digits(board.slowdown));
-  switch (verdict(board, answer)) {
+  switch (verdict(board, sized)) {
     case BoardVerdict::kSuffices:
       return {"Fast enough", fmt::format(": {} has {}{} × headroom.", name,
                                          answer.is_above ? "at least " : "", digits(headroom))};
@@ -73,8 +84,9 @@ Answer board_answer(const Board& board, const sizing::Answer& answer) {
       break;
   }
   return {"Undecided", fmt::format(": {} may not be fast enough, because {}.", name,
-                                   answer.is_above ? "no flight was as slow as that"
-                                                   : "it is too close to the limit")};
+                                   answer.is_above   ? "no flight was as slow as that"
+                                   : answer.is_below ? "whether speed matters is not known"
+                                                     : "it is too close to the limit")};
 }
 
 Answer flattery(const SizeReport& report) {
@@ -100,7 +112,9 @@ std::vector<CurvePoint> curve_points(const sizing::SuccessCurve& curve, double l
   return points;
 }
 
-BoardVerdict verdict(const Board& board, const sizing::Answer& answer) {
+BoardVerdict verdict(const Board& board, const SizedCondition& sized) {
+  const sizing::Answer& answer = sized.answer;
+  if (answer.is_below && !speed_matters(sized)) return BoardVerdict::kUndecided;
   const double low = board.low.value_or(board.slowdown), high = board.high.value_or(board.slowdown);
   if (high <= answer.threshold.low && !answer.is_below) return BoardVerdict::kSuffices;
   if (low >= answer.threshold.high && !answer.is_above) return BoardVerdict::kDoesNot;
@@ -110,7 +124,8 @@ BoardVerdict verdict(const Board& board, const sizing::Answer& answer) {
 std::vector<Answer> size_answers(const SizeReport& report) {
   const sizing::Answer& answer = report.synchronised.answer;
   std::vector<Answer> answers = {main_answer(report)};
-  for (const Board& board : report.boards) answers.push_back(board_answer(board, answer));
+  for (const Board& board : report.boards)
+    answers.push_back(board_answer(board, report.synchronised));
   if (report.unsynchronised) answers.push_back(flattery(report));
   if (answer.basis == sizing::Basis::kLevels)
     answers.push_back(
@@ -118,15 +133,22 @@ std::vector<Answer> size_answers(const SizeReport& report) {
          " fits the flights: near slowdowns differ more in success than such a curve allows. The "
          "answer is by neighbourhoods of slowdowns: the interval is from the largest one that is "
          "sufficient to the smallest one that is not."});
+  const std::size_t copies = report.synchronised.copies;
   if (!answer.is_narrow)
     answers.push_back(
         {"Less sure than asked",
-         fmt::format(
-             ": the interval is wider than a factor of {}, because {}.",
-             digits(report.question.interval),
-             report.synchronised.flights.size() + report.not_flown.size() >= report.most_flights
-                 ? fmt::format("{} flights are the most that were allowed", report.most_flights)
-                 : "slowdowns in between could not be decided")});
+         fmt::format(": the interval is wider than a factor of {}, because {}.",
+                     digits(report.question.interval),
+                     copies >= kMostCopies ? "the seeds change too little"
+                     : report.synchronised.flights.size() + copies + report.not_flown.size() >=
+                             report.most_flights
+                         ? fmt::format("no more than {} were allowed",
+                                       counted(report.most_flights, "flight"))
+                         : "slowdowns in between could not be decided")});
+  if (copies > 0)
+    answers.push_back({"Not counted", fmt::format(": {} more, each a copy of one at the same "
+                                                  "slowdown, because its seed changes nothing.",
+                                                  flights_text(copies))});
   std::vector<const campaign::TrialResult*> trials;
   for (const campaign::TrialResult& trial : report.synchronised.trials) trials.push_back(&trial);
   std::ranges::move(answers_on_flights(trials, report.pace.unreadable),
@@ -146,9 +168,12 @@ std::vector<std::string> size_advice(const SizeReport& report) {
   if (!answer.is_narrow) advice.emplace_back("Fly more: `--max-trials`, with `--resume`.");
   const bool is_short =
       answer.is_below || std::ranges::any_of(report.boards, [&](const Board& board) {
-        return verdict(board, answer) == BoardVerdict::kDoesNot;
+        return verdict(board, report.synchronised) == BoardVerdict::kDoesNot;
       });
-  if (report.pace.pace && !report.pace.pace->stages.empty()) {
+  // Where the flights do not show that speed matters, no stage is to blame.
+  const bool has_limit =
+      !answer.is_above && (!answer.is_below || speed_matters(report.synchronised));
+  if (has_limit && report.pace.pace && !report.pace.pace->stages.empty()) {
     const timing::StageRow& stage = report.pace.pace->stages.front();
     advice.push_back(fmt::format("{}“{}” first: it takes {:.0f} % of the computing time.",
                                  is_short ? "Speed up " : "For more headroom, speed up ",
@@ -199,6 +224,31 @@ std::optional<double> margin_of(const campaign::MetricValue& metric) {
 std::optional<double> margin_of(const judge::ClauseVerdict& clause) {
   if (!clause.margin || !clause.limit || *clause.limit == 0.0) return std::nullopt;
   return *clause.margin / std::abs(*clause.limit);
+}
+
+bool add_flight(SizedCondition& to, const campaign::TrialResult& trial, double slowdown) {
+  for (std::size_t i = 0; i < to.flights.size(); ++i) {
+    if (to.flights[i].slowdown != slowdown || !campaign::are_copies(to.trials[i], trial)) continue;
+    ++to.copies;
+    return true;
+  }
+  to.flights.push_back(flight_of(trial, slowdown));
+  to.trials.push_back(trial);
+  return false;
+}
+
+bool speed_matters(const SizedCondition& sized) {
+  constexpr double kLeastChance = 0.05;
+  std::vector<sizing::Flight> flights = sized.flights;
+  std::ranges::stable_sort(flights, {}, &sizing::Flight::slowdown);
+  campaign::Count fast, slow;
+  for (std::size_t i = 0; i < flights.size(); ++i) {
+    campaign::Count& half = 2 * i < flights.size() ? fast : slow;
+    ++half.all;
+    half.of_them += flights[i].reached ? 1U : 0U;
+  }
+  return fast.of_them * slow.all > slow.of_them * fast.all &&
+         campaign::fisher_exact(fast, slow) < kLeastChance;
 }
 
 sizing::Flight flight_of(const campaign::TrialResult& trial, double slowdown) {

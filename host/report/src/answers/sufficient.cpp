@@ -7,9 +7,6 @@
 
 #include <fmt/format.h>
 
-#include <tether/base/text_table.h>
-#include <tether/os/shell_word.h>
-
 namespace tether::report {
 namespace {
 
@@ -18,15 +15,6 @@ using ByFactor = std::map<double, Ruling>;
 
 bool is_factor(const scenario::Setting& setting) {
   return setting.key == "cpu_factor" || setting.key == "condition.cpu_factor";
-}
-
-/// " with rate_hz = 10"; empty: cpu_factor is the only value.
-std::string other_settings(const Verdict& point) {
-  std::string text;
-  for (const scenario::Setting& setting : point.settings)
-    if (!is_factor(setting))
-      text += fmt::format("{}{} = {}", text.empty() ? " with " : ", ", setting.key, setting.value);
-  return text;
 }
 
 std::optional<Answer> sufficient_factor(const std::string& what, const ByFactor& flown) {
@@ -41,42 +29,18 @@ std::optional<Answer> sufficient_factor(const std::string& what, const ByFactor&
                                 : fmt::format("and {} at {:g}", name(next->second), next->first))};
 }
 
-/// "`tether size face_anchor --condition target`"; empty: it cannot fly this.
-std::string size_command(const ConditionVerdict& condition, bool searches_faster) {
-  if (condition.size_arguments.empty()) return "";
-  std::string command = "tether size";
-  for (const std::string& word : condition.size_arguments) command += " " + os::shell_word(word);
-  const auto names = [&](const char* option) {
-    return std::ranges::count(condition.size_arguments, option) > 0;
-  };
-  if (searches_faster && !names("--target") && !names("--between")) command += " --between 0.1,2";
-  return "`" + command + "`";
-}
-
 }  // namespace
 
 bool is_sufficient(Ruling ruling) {
   return ruling == Ruling::kFastEnough || ruling == Ruling::kFastEnoughSoFar;
 }
 
-std::string sufficient_condition(const Verdict& verdict) {
-  const ConditionVerdict& lead = verdict.conditions[verdict.lead];
-  if (lead.ruling != Ruling::kNotFastEnough) return "";
-  const auto computing_s = [](const ConditionVerdict& one) {
-    return one.pace ? one.pace->median_s : 0.0;
-  };
-  const ConditionVerdict* slowest = nullptr;
-  for (const ConditionVerdict& one : verdict.conditions)
-    if (is_sufficient(one.ruling) &&
-        (slowest == nullptr || computing_s(one) > computing_s(*slowest)))
-      slowest = &one;
-  if (slowest == nullptr) return "";
-  std::string text = fmt::format(" “{}” is {}", slowest->condition, name(slowest->ruling));
-  if (computing_s(*slowest) > 0.0 && computing_s(lead) > computing_s(*slowest))
-    text += fmt::format(": an image costs {} instead of {}, {} × less",
-                        short_ms(computing_s(*slowest)), short_ms(computing_s(lead)),
-                        fixed(computing_s(lead) / computing_s(*slowest), 1));
-  return text + ".";
+std::string other_settings(const Verdict& point) {
+  std::string text;
+  for (const scenario::Setting& setting : point.settings)
+    if (!is_factor(setting))
+      text += fmt::format("{}{} = {}", text.empty() ? " with " : ", ", setting.key, setting.value);
+  return text;
 }
 
 std::vector<Answer> sufficient_factors(const std::vector<Verdict>& points) {
@@ -94,31 +58,6 @@ std::vector<Answer> sufficient_factors(const std::vector<Verdict>& points) {
       if (auto answer = sufficient_factor(what, by_factor)) answers.push_back(std::move(*answer));
   }
   return answers;
-}
-
-std::string faster_advice(const ConditionVerdict& lead) {
-  const std::string command = size_command(lead, true);
-  return "The program reads every image, so the computer may not be the cause. To see whether a "
-         "faster one would do" +
-         (command.empty() ? ", fly on one." : ": " + command);
-}
-
-std::string threshold_advice(const ConditionVerdict& lead) {
-  const bool is_too_slow = lead.ruling == Ruling::kNotFastEnough;
-  const std::string what = is_too_slow
-                               ? "how much faster the computer must be"
-                               : "the headroom, that is how much slower the computer may be";
-  const std::string command = size_command(lead, is_too_slow);
-  if (!command.empty()) return fmt::format("To find {}: {}", what, command);
-  if (lead.is_on_real_board)
-    return fmt::format(
-        "A real board cannot be slowed down. To find {}: write a virtual target of the board "
-        "(`tether-sut calibrate`), and name it with `tether size SCENARIO --target`.",
-        what);
-  return fmt::format(
-      "`tether size` finds {}, for a scenario's own conditions on virtual targets. Add the one "
-      "that was flown here to the scenario.",
-      what);
 }
 
 }  // namespace tether::report

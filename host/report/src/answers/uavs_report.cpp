@@ -5,8 +5,11 @@
 
 #include <fmt/format.h>
 
+#include <tether/base/counted.h>
 #include <tether/campaign/campaign_plan.h>
+#include <tether/campaign/copies.h>
 #include <tether/os/shell_word.h>
+#include <tether/report/size_report.h>
 #include <tether/report/uavs_report.h>
 
 namespace tether::report {
@@ -51,9 +54,10 @@ std::vector<sizing::UavLevel> uav_levels(const std::vector<UavsPoint>& points) {
     if (point.trials.empty()) continue;
     sizing::UavLevel& level = levels.emplace_back();
     level.uavs = point.uavs;
-    level.flights = point.trials.size();
-    for (const campaign::TrialResult& trial : point.trials)
-      if (trial.outcome == campaign::Outcome::kGoalReached) ++level.reached;
+    const auto distinct = campaign::distinct_flights(point.trials);
+    level.flights = distinct.size();
+    level.reached = static_cast<std::size_t>(std::ranges::count(
+        distinct, campaign::Outcome::kGoalReached, &campaign::TrialResult::outcome));
   }
   return levels;
 }
@@ -88,26 +92,38 @@ std::size_t flights_of(const UavsReport& report) {
 std::vector<Answer> uavs_answers(const UavsReport& report) {
   std::vector<Answer> answers = {
       {lead_of(report),
-       fmt::format(" (“{}” under “{}”, {} of the flights wanted): {}; {}; {} flights.",
-                   report.board, report.condition, in_percent(report.question.success),
-                   evidence_of(report), in_percent(report.question.confidence),
-                   flights_of(report))}};
+       fmt::format(" (“{}” under “{}”, {} of the flights wanted): {}; {}; {}.", report.board,
+                   report.condition, in_percent(report.question.success), evidence_of(report),
+                   in_percent(report.question.confidence), counted(flights_of(report), "flight"))}};
   if (const auto& pace = report.pace.pace;
       pace && !pace->shared_board.empty() && !pace->camera.empty())
     answers.push_back(
         {"What sharing costs",
          fmt::format(": with {}, an image costs {} on the board, {:.0f} % of it waiting for cores.",
                      uavs(pace->programs), short_ms(pace->median_s), 100.0 * pace->waiting)});
+  const std::size_t copies = copies_in(report);
   if (!report.answer.is_decided())
     answers.push_back(
-        {"Less sure than asked",
-         fmt::format(": {} flights are the most that were allowed.", report.most_flights)});
+        {"Less sure than asked", copies >= kMostCopies
+                                     ? ": the seeds change too little."
+                                     : fmt::format(": no more than {} were allowed.",
+                                                   counted(report.most_flights, "flight"))});
+  if (copies > 0)
+    answers.push_back({"Not counted", fmt::format(": {}, each a copy of another one, because its "
+                                                  "seed changes nothing.",
+                                                  flights_text(copies))});
   std::vector<const campaign::TrialResult*> trials;
   for (const UavsPoint& point : report.points)
     for (const campaign::TrialResult& trial : point.trials) trials.push_back(&trial);
   std::ranges::move(answers_on_flights(trials, report.pace.unreadable),
                     std::back_inserter(answers));
   return answers;
+}
+
+std::size_t copies_in(const UavsReport& report) {
+  std::size_t copies = flights_of(report);
+  for (const sizing::UavLevel& level : uav_levels(report.points)) copies -= level.flights;
+  return copies;
 }
 
 std::vector<std::string> uavs_advice(const UavsReport& report) {

@@ -1,15 +1,18 @@
 #include "answers/board_pace.h"
-#include "answers/other_reasons.h"
+#include "answers/miss_reason.h"
+#include "answers/sufficient.h"
 #include "tables/report_format.h"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 
 #include <fmt/format.h>
 
 #include <tether/base/error.h>
 #include <tether/campaign/campaign_plan.h>
+#include <tether/campaign/copies.h>
 #include <tether/report/size_report.h>
 #include <tether/report/verdict.h>
 #include <tether/scenario/scenario.h>
@@ -24,8 +27,12 @@ bool is_free_running(const campaign::TrialResult& trial) {
   return trial.policy == scenario::name(scenario::Policy::kFreeRunning);
 }
 
+/// Of a flight that was cut, the record is not complete, and an audit of it says nothing.
 bool is_unsound(const campaign::TrialResult& trial) {
-  return (trial.audit && !trial.audit->passed) || trial.sync.causality_violations > 0;
+  const bool has_ended = trial.end == campaign::kEndFinished ||
+                         trial.end == campaign::kEndTimeLimit ||
+                         trial.end == campaign::kEndBatteryEmpty;
+  return (has_ended && trial.audit && !trial.audit->passed) || trial.sync.causality_violations > 0;
 }
 
 /// What of the flight missed its limit. Empty: at most metrics without a value.
@@ -42,8 +49,9 @@ std::vector<std::string> missed_in(const campaign::TrialResult& trial) {
                                    metric.max ? "≤ " + exact(*metric.max) : limit_text(metric),
                                    metric.unit == "1" ? "" : " " + metric.unit));
   const auto has_missed = [](const campaign::SutResult& sut) { return !sut.reached_goal; };
-  if (missed.empty() && std::ranges::any_of(trial.suts, has_missed))
-    missed.emplace_back("the program's own goal");
+  if (const auto sut = std::ranges::find_if(trial.suts, has_missed);
+      missed.empty() && sut != trial.suts.end())
+    missed.push_back("the program's own goal" + (sut->outcome.empty() ? "" : ": " + sut->outcome));
   return missed;
 }
 
@@ -53,16 +61,32 @@ bool has_limit(const campaign::TrialResult& trial) {
   });
 }
 
+void add(std::vector<FlightsInDoubt>& doubts, const campaign::Doubt& doubt) {
+  auto known = std::ranges::find_if(
+      doubts, [&](const FlightsInDoubt& one) { return one.largest.kind >= doubt.kind; });
+  if (known == doubts.end() || known->largest.kind != doubt.kind)
+    known = doubts.insert(known, {doubt, 0});
+  ++known->flights;
+  if (doubt.amount > known->largest.amount) known->largest = doubt;
+}
+
 void count(ConditionVerdict& verdict, const campaign::TrialResult& trial) {
   if (is_unsound(trial)) {
     if (verdict.unsound++ == 0)
       verdict.reason = trial.audit && !trial.audit->passed ? trial.audit->summary : trial.reason;
   }
   if (trial.outcome == campaign::Outcome::kFailed) {
+    verdict.was_interrupted |= trial.end == campaign::kEndInterrupted;
     if (verdict.failed++ == 0 && verdict.unsound == 0) verdict.reason = trial.reason;
     return;
   }
   ++verdict.flown;
+  for (const campaign::Doubt& doubt : trial.this_run.doubts) add(verdict.doubts, doubt);
+  for (const Warning& warning : trial.warnings)
+    if (const std::string line = warning.subject + " " + warning.message;
+        warning.can_change_verdict && warning.consequence != Consequence::kDoubtfulStart &&
+        std::ranges::count(verdict.left_out, line) == 0)
+      verdict.left_out.push_back(line);
   if (trial.outcome == campaign::Outcome::kGoalReached) ++verdict.reached;
   if (has_crash(trial)) ++verdict.crashed;
   if (trial.this_run.target && trial.this_run.target->is_spoiled) ++verdict.throttled;
@@ -76,18 +100,29 @@ void count(ConditionVerdict& verdict, const campaign::TrialResult& trial) {
     compare(fmt::format("“{}”", clause.name), margin_of(clause));
 }
 
+/// Whether a busy machine could have moved a flight over its closest limit.
+bool is_within_spread(const ConditionVerdict& verdict) {
+  const FlightsInDoubt* busy = verdict.doubt(campaign::Doubt::Kind::kBusyMachine);
+  return busy != nullptr && verdict.closest &&
+         std::abs(verdict.closest->second) < busy->largest.amount;
+}
+
 Ruling ruling_of(const ConditionVerdict& verdict, const campaign::ConditionResults& results) {
   const auto& trials = results.trials;
   if (verdict.unsound > 0) return Ruling::kVoid;
   if (verdict.flown == 0) return verdict.failed > 0 ? Ruling::kSetUpFailed : Ruling::kUndecided;
   if (std::ranges::any_of(trials, is_free_running)) return Ruling::kFreeRunning;
+  if (verdict.doubt(campaign::Doubt::Kind::kUnseenWait) != nullptr ||
+      verdict.doubt(campaign::Doubt::Kind::kParallelThreads) != nullptr)
+    return Ruling::kUnseen;
   const bool all = verdict.reached == verdict.flown;
   if (all && std::ranges::none_of(trials, has_limit)) return Ruling::kNothingToDecide;
+  if (is_within_spread(verdict)) return Ruling::kUndecided;
   if (verdict.share->low >= kWantedSuccess) return Ruling::kFastEnough;
   if (all) return Ruling::kFastEnoughSoFar;
-  const bool is_missed = verdict.share->high < kWantedSuccess || verdict.planned == 1;
+  const bool is_missed = verdict.share->high < kWantedSuccess || verdict.is_one_flight();
   // A board that was throttled could do better.
-  return is_missed && verdict.throttled == 0 ? Ruling::kNotFastEnough : Ruling::kUndecided;
+  return is_missed && verdict.throttled == 0 ? Ruling::kGoalMissed : Ruling::kUndecided;
 }
 
 ConditionVerdict verdict_of(const campaign::ConditionResults& results) {
@@ -103,15 +138,20 @@ ConditionVerdict verdict_of(const campaign::ConditionResults& results) {
     if (trial.outcome != campaign::Outcome::kFailed) flown.push_back(&trial);
   }
   verdict.missed = missed_limits(flown);
-  if (verdict.flown > 0) verdict.share = exact_interval(verdict.reached, verdict.flown);
+  const auto distinct = campaign::distinct_flights(results.trials);
+  verdict.distinct = distinct.size();
+  verdict.distinct_reached = static_cast<std::size_t>(std::ranges::count(
+      distinct, campaign::Outcome::kGoalReached, &campaign::TrialResult::outcome));
+  if (verdict.flown > 0) verdict.share = exact_interval(verdict.distinct_reached, verdict.distinct);
   verdict.ruling = ruling_of(verdict, results);
   return verdict;
 }
 
 /// How many flights would decide, if their share stays what it is. 0: very many.
 std::size_t flights_to_decide(const ConditionVerdict& verdict) {
-  const double share = static_cast<double>(verdict.reached) / static_cast<double>(verdict.flown);
-  for (std::size_t flown = verdict.flown + 1; flown <= kMostFlights; ++flown) {
+  const double share =
+      static_cast<double>(verdict.distinct_reached) / static_cast<double>(verdict.distinct);
+  for (std::size_t flown = verdict.distinct + 1; flown <= kMostFlights; ++flown) {
     const auto reached = static_cast<std::size_t>(std::lround(share * static_cast<double>(flown)));
     const campaign::Interval interval = exact_interval(reached, flown);
     if (interval.low >= kWantedSuccess || interval.high < kWantedSuccess) return flown;
@@ -119,18 +159,12 @@ std::size_t flights_to_decide(const ConditionVerdict& verdict) {
   return 0;
 }
 
-void advise_on_pace(std::vector<Advice>& advice, const ConditionVerdict& lead) {
-  if (!lead.pace) return;
-  if (lead.pace->keeps_up())
-    advice.push_back({Advice::Kind::kTryFaster, lead.condition});
-  else
-    advice.push_back({Advice::Kind::kSpeedUpStage, lead.pace->stages.front().stage});
-}
-
 std::vector<Advice> advice_on(const ConditionVerdict& lead) {
   using Kind = Advice::Kind;
   std::vector<Advice> advice;
-  if (lead.failed > 0 && lead.unsound == 0) advice.push_back({Kind::kMendSetUp});
+  const bool is_too_slow = lead.pace && lead.pace->is_too_slow_for_camera();
+  if (lead.failed > 0 && lead.unsound == 0)
+    advice.push_back({lead.was_interrupted ? Kind::kFlyAgain : Kind::kMendSetUp});
   if (lead.throttled > 0) advice.push_back({Kind::kCoolBoard, lead.condition});
   switch (lead.ruling) {
     case Ruling::kVoid:
@@ -138,20 +172,34 @@ std::vector<Advice> advice_on(const ConditionVerdict& lead) {
       break;
     case Ruling::kSetUpFailed:
       break;
+    case Ruling::kUnseen:
+      if (lead.doubt(campaign::Doubt::Kind::kUnseenWait) != nullptr)
+        advice.push_back({Kind::kShowWaits});
+      if (lead.doubt(campaign::Doubt::Kind::kParallelThreads) != nullptr)
+        advice.push_back({Kind::kRunConcurrent});
+      break;
     case Ruling::kNotFastEnough:
-      advise_on_pace(advice, lead);
-      if (!lead.pace || !lead.pace->keeps_up())
-        advice.push_back({Kind::kFindThreshold, lead.condition});
+      if (is_too_slow) advice.push_back({Kind::kSpeedUpStage, lead.pace->stages.front().stage});
+      advice.push_back({Kind::kFindThreshold, lead.condition});
+      break;
+    case Ruling::kGoalMissed:
+      advice.push_back({Kind::kTryFaster, lead.condition});
+      if (is_too_slow) advice.push_back({Kind::kSpeedUpStage, lead.pace->stages.front().stage});
       break;
     case Ruling::kOtherReason:
-      advice.push_back({Kind::kFindReason, lead.other_reason->condition});
+      advice.push_back({Kind::kFindReason, lead.miss->condition});
       break;
     case Ruling::kUndecided:
     case Ruling::kFastEnoughSoFar:
-      if (lead.flown > 0)
+      if (lead.flown == 0) break;
+      if (is_within_spread(lead)) advice.push_back({Kind::kQuietMachine});
+      if (lead.flown > 1 && lead.is_one_flight())
+        advice.push_back({Kind::kVarySeeds});
+      else if (!is_within_spread(lead))
         advice.push_back({Kind::kFlyMore, lead.condition, flights_to_decide(lead)});
-      if (lead.reached < lead.flown) advise_on_pace(advice, lead);
-      if (lead.flown > 0) advice.push_back({Kind::kFindThreshold, lead.condition});
+      if (lead.reached < lead.flown && is_too_slow)
+        advice.push_back({Kind::kSpeedUpStage, lead.pace->stages.front().stage});
+      advice.push_back({Kind::kFindThreshold, lead.condition});
       break;
     case Ruling::kFastEnough:
       advice.push_back({Kind::kFindThreshold, lead.condition});
@@ -199,6 +247,50 @@ std::optional<Pace> pace_of_condition(const campaign::ScenarioResults& scenario,
   return first;
 }
 
+/// The verdict without reasons for missed goals, lead and advice.
+Verdict unexplained(const campaign::ScenarioResults& scenario,
+                    const std::vector<std::optional<Pace>>& paces) {
+  Verdict verdict{.scenario = scenario.swept_from.empty() ? scenario.scenario : scenario.swept_from,
+                  .conditions = {}};
+  verdict.settings = scenario.settings;
+  for (const scenario::Setting& setting : scenario.settings)
+    verdict.point +=
+        fmt::format("{}{} = {}", verdict.point.empty() ? "" : ", ", setting.key, setting.value);
+  for (const campaign::ConditionResults& condition : scenario.conditions) {
+    verdict.conditions.push_back(verdict_of(condition));
+    const std::size_t i = verdict.conditions.size() - 1;
+    if (i < paces.size()) verdict.conditions.back().pace = paces[i];
+  }
+  return verdict;
+}
+
+/// Adds what they are without. Points of a sweep that differ in their speed only are compared as
+/// conditions of one scenario are.
+std::vector<Verdict> rule(std::vector<Verdict> verdicts,
+                          const std::vector<const campaign::ScenarioResults*>& scenarios) {
+  std::map<std::pair<std::string, std::string>, std::vector<ToExplain>> comparable;
+  for (std::size_t i = 0; i < verdicts.size(); ++i) {
+    Verdict& verdict = verdicts[i];
+    for (std::size_t j = 0; j < verdict.conditions.size(); ++j) {
+      ConditionVerdict& condition = verdict.conditions[j];
+      const std::string with = verdict.point.empty() ? "" : " with " + verdict.point;
+      comparable[{verdict.scenario, other_settings(verdict)}].push_back(
+          {&condition, &scenarios[i]->conditions[j], condition.condition + with});
+    }
+  }
+  for (const auto& [scenario, conditions] : comparable) explain_misses(conditions);
+  for (Verdict& verdict : verdicts) {
+    // Of equal rulings, the condition whose program is the slowest.
+    const auto lead =
+        std::ranges::min_element(verdict.conditions, {}, [](const ConditionVerdict& condition) {
+          return std::pair(condition.ruling, condition.pace ? -condition.pace->p95_s : 0.0);
+        });
+    verdict.lead = static_cast<std::size_t>(lead - verdict.conditions.begin());
+    verdict.advice = advice_on(*lead);
+  }
+  return verdicts;
+}
+
 }  // namespace
 
 std::string missed_without_value(const campaign::TrialResult& trial) {
@@ -229,6 +321,17 @@ MissedLimits missed_limits(std::span<const campaign::TrialResult* const> trials)
   return all;
 }
 
+const Verdict& most_urgent(const std::vector<Verdict>& verdicts) {
+  return *std::ranges::min_element(verdicts, {},
+                                   [](const Verdict& one) { return one.first().ruling; });
+}
+
+const FlightsInDoubt* ConditionVerdict::doubt(campaign::Doubt::Kind kind) const {
+  const auto found = std::ranges::find_if(
+      doubts, [&](const FlightsInDoubt& one) { return one.largest.kind == kind; });
+  return found == doubts.end() ? nullptr : &*found;
+}
+
 campaign::Interval exact_interval(std::size_t reached, std::size_t flown) {
   const sizing::Share share = sizing::exact_share(reached, flown, 0.95);
   return {share.low, share.high};
@@ -236,43 +339,26 @@ campaign::Interval exact_interval(std::size_t reached, std::size_t flown) {
 
 Verdict verdict_of(const campaign::ScenarioResults& scenario,
                    const std::vector<std::optional<Pace>>& paces) {
-  Verdict verdict{.scenario = scenario.swept_from.empty() ? scenario.scenario : scenario.swept_from,
-                  .conditions = {}};
-  verdict.settings = scenario.settings;
-  for (const scenario::Setting& setting : scenario.settings)
-    verdict.point +=
-        fmt::format("{}{} = {}", verdict.point.empty() ? "" : ", ", setting.key, setting.value);
-  for (const campaign::ConditionResults& condition : scenario.conditions) {
-    verdict.conditions.push_back(verdict_of(condition));
-    const std::size_t i = verdict.conditions.size() - 1;
-    if (i < paces.size()) verdict.conditions.back().pace = paces[i];
-  }
-  find_other_reasons(verdict.conditions, scenario);
-  // Of equal rulings, the condition whose program is the slowest.
-  const auto lead =
-      std::ranges::min_element(verdict.conditions, {}, [](const ConditionVerdict& condition) {
-        return std::pair(condition.ruling, condition.pace ? -condition.pace->p95_s : 0.0);
-      });
-  verdict.lead = static_cast<std::size_t>(lead - verdict.conditions.begin());
-  verdict.advice = advice_on(*lead);
-  return verdict;
+  return rule({unexplained(scenario, paces)}, std::vector{&scenario}).front();
 }
 
 std::vector<Verdict> verdicts_of(const campaign::CampaignResults& results,
                                  const std::filesystem::path& folder) {
   const bool is_run = std::filesystem::exists(folder / campaign::kResultFile);
   std::vector<Verdict> verdicts;
+  std::vector<const campaign::ScenarioResults*> scenarios;
   for (const campaign::ScenarioResults& scenario : results.scenarios) {
     std::vector<std::optional<Pace>> paces;
     std::vector<std::string> unreadable;
     for (const campaign::ConditionResults& condition : scenario.conditions)
       paces.push_back(
           pace_of_condition(scenario, condition, folder, is_run, unreadable.emplace_back()));
-    verdicts.push_back(verdict_of(scenario, paces));
+    verdicts.push_back(unexplained(scenario, paces));
+    scenarios.push_back(&scenario);
     for (std::size_t i = 0; i < unreadable.size(); ++i)
       verdicts.back().conditions[i].unreadable = unreadable[i];
   }
-  return verdicts;
+  return rule(std::move(verdicts), scenarios);
 }
 
 }  // namespace tether::report

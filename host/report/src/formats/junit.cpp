@@ -212,7 +212,7 @@ std::string to_junit(const SizeReport& report, const std::filesystem::path& fold
       fmt::format("{}", fmt::join(sentences, "\n")));
   for (std::size_t i = 0; i < report.boards.size(); ++i)
     add(report.boards[i].name, "board",
-        verdict(report.boards[i], report.synchronised.answer) == BoardVerdict::kSuffices,
+        verdict(report.boards[i], report.synchronised) == BoardVerdict::kSuffices,
         sentences[1 + i]);
   return text_of(std::vector<Suite>{suite});
 }

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <tether/base/text_table.h>
 #include <tether/report/page.h>
 #include <tether/report/run_text.h>
 #include <tether/report/verdict.h>
@@ -27,12 +28,14 @@ std::string aligned(const Rows& rows) {
 
 std::string metric_text(const campaign::MetricValue& metric, const std::string& reason) {
   const std::string unit = metric.unit == "1" ? "" : " " + metric.unit;
-  const std::string value = metric.value ? fmt::format("{:.4g}{}", *metric.value, unit)
-                            : metric.missing_because == reason ? "none"
-                                                               : "none: " + metric.missing_because;
-  return value + (metric.max   ? fmt::format("  (limit {:.4g})", *metric.max)
-                  : metric.min ? fmt::format("  (at least {:.4g})", *metric.min)
-                               : "");
+  const std::optional<double>& limit = metric.max ? metric.max : metric.min;
+  const double value = metric.value.value_or(limit.value_or(0.0));
+  const std::string text = metric.value ? distinct_text(value, limit.value_or(value), 4) + unit
+                           : metric.missing_because == reason ? "none"
+                                                              : "none: " + metric.missing_because;
+  if (!limit) return text;
+  return fmt::format("{}  ({} {})", text, metric.max ? "limit" : "at least",
+                     distinct_text(*limit, value, 4));
 }
 
 std::string contacts_text(const campaign::UavContacts& own) {
@@ -63,8 +66,7 @@ std::string charge_text(const campaign::UavEnergy& energy) {
                      energy.least_voltage_V);
 }
 
-std::string clause_text(const judge::ClauseVerdict& clause, bool is_evaluated) {
-  if (!is_evaluated) return "not evaluated";
+std::string clause_text(const judge::ClauseVerdict& clause) {
   const std::string margin =
       clause.margin ? fmt::format(", margin {:.4g} {}", *clause.margin, clause.unit) : "";
   return fmt::format("{}{}{}{}", clause.met ? "met" : "MISSED", margin,
@@ -101,6 +103,40 @@ void add_circumstances(Rows& rows, const campaign::TrialResult& result) {
     if (warning.consequence == Consequence::kMissing) rows.emplace_back("missing", warning.subject);
 }
 
+void add_record(Rows& rows, const std::filesystem::path& folder) {
+  const std::filesystem::path record = folder / "record.mcap";
+  if (std::filesystem::exists(record)) rows.emplace_back("record", record.string());
+}
+
+Rows rows_of(const campaign::TrialResult& result, const std::filesystem::path& folder) {
+  Rows rows;
+  for (const auto& metric : result.metrics)
+    rows.emplace_back(metric.label, metric_text(metric, result.reason));
+  for (const auto& clause : result.clauses) rows.emplace_back(clause.name, clause_text(clause));
+  for (const campaign::UavEnergy& energy : result.energy) {
+    rows.emplace_back("energy of " + energy.uav, energy_text(energy));
+    rows.emplace_back("charge of " + energy.uav, charge_text(energy));
+  }
+  for (const campaign::UavContacts& own : result.contacts)
+    rows.emplace_back(own.uav, contacts_text(own));
+  add_circumstances(rows, result);
+  if (result.audit) rows.emplace_back("audit", result.audit->summary);
+  for (const std::string& note : result.this_run.notes) rows.emplace_back("note", note);
+  add_record(rows, folder);
+  return rows;
+}
+
+Rows rows_of_failure(const campaign::TrialResult& result, const std::filesystem::path& folder) {
+  Rows rows;
+  if (result.sync.interactions > 0)
+    rows.emplace_back("ended",
+                      fmt::format("at ST {:.3f} s, after {} interactions",
+                                  to_seconds(result.sync.st_at_end), result.sync.interactions));
+  for (const std::string& note : result.this_run.notes) rows.emplace_back("note", note);
+  add_record(rows, folder);
+  return rows;
+}
+
 }  // namespace
 
 std::string run_text(const campaign::TrialResult& result, const std::filesystem::path& folder,
@@ -111,23 +147,8 @@ std::string run_text(const campaign::TrialResult& result, const std::filesystem:
       fmt::format("{} under \"{}\", seed {}: {}{}\n", result.scenario, result.condition,
                   result.seed, campaign::name(result.outcome),
                   has_failed ? "" : ": " + result.reason);
-  Rows rows;
-  for (const auto& metric : result.metrics)
-    rows.emplace_back(metric.label, metric_text(metric, result.reason));
-  for (const auto& clause : result.clauses)
-    rows.emplace_back(clause.name, clause_text(clause, !has_failed));
-  for (const campaign::UavEnergy& energy : result.energy) {
-    rows.emplace_back("energy of " + energy.uav, energy_text(energy));
-    rows.emplace_back("charge of " + energy.uav, charge_text(energy));
-  }
-  for (const campaign::UavContacts& own : result.contacts)
-    rows.emplace_back(own.uav, contacts_text(own));
-  add_circumstances(rows, result);
-  if (result.audit) rows.emplace_back("audit", result.audit->summary);
-  for (const std::string& note : result.this_run.notes) rows.emplace_back("note", note);
-  const std::filesystem::path record = folder / "record.mcap";
-  if (std::filesystem::exists(record)) rows.emplace_back("record", record.string());
-  return head + aligned(rows);
+  // Of a flight that failed, no value means anything.
+  return head + aligned(has_failed ? rows_of_failure(result, folder) : rows_of(result, folder));
 }
 
 }  // namespace tether::report

@@ -44,6 +44,7 @@ Json flight_json(const sizing::Flight& flight, const campaign::TrialResult& tria
 Json json_of(const SizedCondition& sized) {
   Json json = {{"condition", sized.condition},
                {"answer", json_of(sized.answer)},
+               {"copies", sized.copies},
                {"curve", Json::array()},
                {"flights", Json::array()}};
   for (const CurvePoint& point : sized.curve)
@@ -56,11 +57,11 @@ Json json_of(const SizedCondition& sized) {
   return json;
 }
 
-Json json_of(const Board& board, const sizing::Answer& answer) {
+Json json_of(const Board& board, const SizedCondition& sized) {
   Json json = {{"name", board.name},
                {"slowdown", board.slowdown},
-               {"headroom", answer.threshold.estimate / board.slowdown},
-               {"verdict", kVerdicts[static_cast<std::size_t>(verdict(board, answer))]}};
+               {"headroom", sized.answer.threshold.estimate / board.slowdown},
+               {"verdict", kVerdicts[static_cast<std::size_t>(verdict(board, sized))]}};
   if (board.low) json["calibration"] = {*board.low, *board.high};
   return json;
 }
@@ -81,7 +82,7 @@ std::string size_json(const SizeReport& report) {
   json.update(json_of(report.synchronised));
   json["boards"] = Json::array();
   for (const Board& board : report.boards)
-    json["boards"].push_back(json_of(board, report.synchronised.answer));
+    json["boards"].push_back(json_of(board, report.synchronised));
   if (report.unsynchronised) json["unsynchronised"] = json_of(*report.unsynchronised);
   json["not_flown"] = report.not_flown;
   json["settings"] = report.settings;

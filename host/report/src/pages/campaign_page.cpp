@@ -183,6 +183,7 @@ std::string sweep_section(FigureMaker& figures, const Sweep& sweep,
   for (const std::string& metric : sweep.points.front()->metrics)
     html += figures.plot(sweep_plot(sweep, metric),
                          "Means. Each circle is a trial; a dotted line is the limit.");
+  if (const Table tests = sweep_tests_table(sweep); !tests.rows.empty()) html += to_html(tests);
   return html + folded("Table", to_html(sweep_table(sweep))) + "</section>\n";
 }
 

@@ -46,22 +46,24 @@ std::string outcome_sentences(const campaign::TrialResult& trial) {
 
 std::string plots_part(FigureMaker& figures, const record::Record& record) {
   std::vector<PlottedRun> runs;
-  std::string html = element("h2", "The flight");
+  std::string times;
   for (const record::SutInfo& sut : record.header.suts) {
     const PlottedRun run{&record, sut.uav, sut.uav, runs.size()};
     runs.push_back(run);
-    html += figures.plot(
+    times += figures.plot(
         timeline_plot(run, Extent::kFirstInteractions),
         fmt::format("Simulated and execution time of {} over wall time: first interactions.",
                     sut.uav));
-    html += figures.plot(
+    times += figures.plot(
         timeline_plot(run, Extent::kWhole),
         fmt::format("Simulated and execution time of {} over wall time: whole run.", sut.uav));
-    html += figures.plot(lag_plot(run),
-                         fmt::format("Lag ε = ET − ST when each request of {} arrived.", sut.uav));
+    times += figures.plot(lag_plot(run),
+                          fmt::format("Lag ε = ET − ST when each request of {} arrived.", sut.uav));
   }
-  html += figures.plot(path_plot(runs), fmt::format("Path, seen from above. {}", kPathCaption));
-  return html;
+  const std::string path =
+      figures.plot(path_plot(runs), fmt::format("Path, seen from above. {}", kPathCaption));
+  return element("h2", "The flight") + path +
+         folded("How the simulation kept up with the program", times);
 }
 
 constexpr std::size_t kMostContacts = 100;
@@ -84,6 +86,13 @@ std::string contacts_part(const record::Record& record) {
         {contact.uav, contact.with, decimals(to_seconds(contact.at)), decimals(contact.speed_m_s)});
   }
   return title + to_html(table, "Contacts");
+}
+
+std::string metrics_part(const campaign::TrialResult& trial) {
+  Table metrics = run_table(trial);
+  metrics.title.clear();
+  std::erase(metrics.notes, trial.reason + ".");  // outcome_sentences has it
+  return element("h2", "Metrics and limits") + to_html(metrics, "Metrics and limits");
 }
 
 std::string mission_part(const campaign::TrialResult& trial) {
@@ -191,11 +200,8 @@ std::string run_page(const std::filesystem::path& folder) {
   const std::vector<Verdict> verdicts = verdicts_of(results, folder);
   body += answer_html(verdicts) + verdict_picture_html({verdicts});
   body += element("p", outcome_sentences(trial)) + "\n" + problems_box(problems(results));
-  body += element("h2", "Metrics and limits");
-  Table metrics = run_table(trial);
-  metrics.title.clear();
-  std::erase(metrics.notes, trial.reason + ".");  // outcome_sentences has it
-  body += to_html(metrics, "Metrics and limits") + mission_part(trial);
+  if (trial.outcome != campaign::Outcome::kFailed)
+    body += metrics_part(trial) + mission_part(trial);
   if (const Table stages = stages_table(verdicts); !stages.rows.empty())
     body += element("h2", "Where the time goes") + to_html(stages);
   if (const Table energy = energy_table(trial); !energy.rows.empty()) body += to_html(energy);

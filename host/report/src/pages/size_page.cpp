@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <tether/base/counted.h>
 #include <tether/report/size_report.h>
 #include <tether/report/table.h>
 
@@ -37,7 +38,7 @@ Table boards_table(const SizeReport& report) {
         {board.name, times_text(board.slowdown),
          board.low ? fmt::format("{} to {}", times_text(*board.low), times_text(*board.high)) : "–",
          fmt::format("{:.2g}", answer.threshold.estimate / board.slowdown),
-         verdict_text(verdict(board, answer))});
+         verdict_text(verdict(board, report.synchronised))});
   }
   return table;
 }
@@ -69,17 +70,16 @@ Table basis_of(const SizeReport& report) {
       {"question", fmt::format("the largest slowdown at which {} of the flights reach the goal",
                                share_text(question.success))},
       {"searched",
-       fmt::format("{} to {} × slower than “{}”; at most {} flights", times_text(question.least),
-                   times_text(question.most), report.synchronised.condition, report.most_flights)},
+       fmt::format("{} to {} × slower than “{}”; at most {}", times_text(question.least),
+                   times_text(question.most), report.synchronised.condition,
+                   counted(report.most_flights, "flight"))},
       {"method",
        answer.basis == sizing::Basis::kLevels
            ? "each neighbourhood of slowdowns alone, because no curve fits"
            : fmt::format("logistic curve over the logarithm of the slowdown with lapse "
                          "rate and floor, Bayesian, from {}",
                          answer.basis == sizing::Basis::kMargins ? "the margins of the metrics"
-                                                                 : "reached and missed goals")},
-      {"fit", fmt::format("p = {:.2g} (posterior predictive; below 0.01 the curve is rejected)",
-                          answer.fit)}};
+                                                                 : "reached and missed goals")}};
   for (const auto& [name, value] : report.settings)
     if (!name.starts_with("file ")) table.rows.push_back({name, value});
   return table;

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <tether/base/counted.h>
 #include <tether/report/uavs_report.h>
 
 namespace tether::report {
@@ -28,20 +29,20 @@ Table uavs_table(const UavsReport& report) {
 
 Table setup_table(const UavsReport& report) {
   Table table{"", {{{""}, {""}}}, {}, {}, 2};
-  table.rows = {
-      {"question",
-       fmt::format("the largest number of UAVs with which {:.4g} % of the flights reach "
-                   "the goal",
-                   100.0 * report.question.success)},
-      {"searched", fmt::format("the first {} to {} UAVs of the scenario; at most {} flights",
-                               report.question.least, report.question.most, report.most_flights)},
-      {"board",
-       report.cores == 0 ? report.board  // a real one
-                         : fmt::format("{}, {} core{}", report.board, report.cores,
-                                       report.cores == 1 ? "" : "s")},
-      {"method",
-       "bisection, then flights with both neighbours of the answer until their exact "
-       "intervals decide"}};
+  table.rows = {{"question",
+                 fmt::format("the largest number of UAVs with which {:.4g} % of the flights reach "
+                             "the goal",
+                             100.0 * report.question.success)},
+                {"searched", fmt::format("the first {} to {} UAVs of the scenario; at most {}",
+                                         report.question.least, report.question.most,
+                                         counted(report.most_flights, "flight"))},
+                {"board",
+                 report.cores == 0 ? report.board  // a real one
+                                   : fmt::format("{}, {} core{}", report.board, report.cores,
+                                                 report.cores == 1 ? "" : "s")},
+                {"method",
+                 "bisection, then flights with both neighbours of the answer until their exact "
+                 "intervals decide"}};
   for (const auto& [name, value] : report.settings)
     if (!name.starts_with("file ")) table.rows.push_back({name, value});
   return table;

@@ -43,14 +43,8 @@ std::string answer_html(const std::vector<Verdict>& points, const std::string& h
 }
 
 std::string answers_html(const std::vector<std::vector<Verdict>>& groups) {
-  if (groups.empty()) return "";
-  std::string html = "<section class=\"answer\" aria-label=\"Answer\">\n";
-  for (const std::vector<Verdict>& points : groups) {
-    Answer answer = answers_of(points).front();
-    answer.lead = points.front().scenario + ": " + answer.lead;
-    html += "<p>" + answer_line(answer) + "</p>\n";
-  }
-  return html + "</section>\n";
+  const std::vector<Answer> headlines = headlines_of(groups);
+  return headlines.empty() ? "" : answer_block(headlines, {});
 }
 
 std::string verdict_picture_html(const std::vector<std::vector<Verdict>>& groups) {

@@ -43,8 +43,8 @@ struct Bounds {
 
 struct Way {
   std::vector<Point> path;
-  std::vector<double> yaw_rad;  // for each of `path`
-  std::vector<Point> odometry;
+  std::vector<double> yaw_rad;               // for each of `path`
+  std::vector<std::vector<Point>> odometry;  // of each task
 };
 
 double yaw_of(const double (&q)[4]) {
@@ -58,23 +58,48 @@ Point placed(const Point& origin, double yaw_rad, double x_m, double y_m) {
 
 // Data of the runs.
 
-std::optional<Point> odometry_of(const record::Annotation& note) {
-  const auto json = nlohmann::json::parse(note.json, nullptr, false);
-  if (!json.is_object()) return std::nullopt;
-  const auto x = json.find("x_m"), y = json.find("y_m");
-  if (x == json.end() || y == json.end() || !x->is_number() || !y->is_number()) return std::nullopt;
-  return Point{x->get<double>(), y->get<double>()};
+/// A pose in a plane.
+struct Pose {
+  Point p;
+  double yaw_rad = 0.0;
+};
+
+std::optional<Pose> odometry_of(const nlohmann::json& note) {
+  const auto number = [&](const char* key) -> std::optional<double> {
+    const auto found = note.find(key);
+    return found != note.end() && found->is_number() ? std::optional(found->get<double>())
+                                                     : std::nullopt;
+  };
+  const auto x = number("x_m"), y = number("y_m");
+  if (!x || !y) return std::nullopt;
+  return Pose{{*x, *y}, number("yaw_rad").value_or(0.0)};
 }
 
-void add_odometry(Way& way, const PlottedRun& run) {
-  std::vector<const record::Annotation*> notes;
-  for (const auto& logged : run.record->annotations) {
-    if (logged.message.uav == run.uav && logged.message.topic == "odometry")
-      notes.push_back(&logged.message);
-  }
-  for (const std::size_t i : thinned(notes.size(), kPoints)) {
-    if (const auto p = odometry_of(*notes[i]))
-      way.odometry.push_back(placed(way.path.front(), way.yaw_rad.front(), p->x_m, p->y_m));
+/// Where the frame of odometry is, whose first note is this one.
+Pose frame_of(const Pose& first, const record::GroundTruth& truth) {
+  const double yaw_rad = yaw_of(truth.q_WB) - first.yaw_rad;
+  return {placed({truth.p_WB_m[0], truth.p_WB_m[1]}, yaw_rad, -first.p.x_m, -first.p.y_m), yaw_rad};
+}
+
+/// Each task has odometry of its own, which begins where the UAV truly is then.
+void add_odometry(Way& way, const PlottedRun& run,
+                  const std::vector<const record::GroundTruth*>& truths) {
+  std::optional<Pose> frame;
+  for (const auto& [at, order, note] : run.record->annotations) {
+    if (note.uav != run.uav) continue;
+    const auto json = nlohmann::json::parse(note.json, nullptr, false);
+    if (!json.is_object()) continue;
+    const bool is_of_task = note.topic == "task" || note.topic == "mission";
+    if (is_of_task && json.value("event", nlohmann::json()) == "start") frame.reset();
+    if (note.topic != "odometry") continue;
+    const std::optional<Pose> pose = odometry_of(json);
+    if (!pose) continue;
+    if (!frame) {
+      const auto after = std::ranges::upper_bound(truths, at, {}, &record::GroundTruth::at);
+      frame = frame_of(*pose, **(after == truths.begin() ? after : std::prev(after)));
+      way.odometry.emplace_back();
+    }
+    way.odometry.back().push_back(placed(frame->p, frame->yaw_rad, pose->p.x_m, pose->p.y_m));
   }
 }
 
@@ -88,7 +113,7 @@ Way way_of(const PlottedRun& run) {
     way.path.push_back({truths[i]->p_WB_m[0], truths[i]->p_WB_m[1]});
     way.yaw_rad.push_back(yaw_of(truths[i]->q_WB));
   }
-  if (!way.path.empty()) add_odometry(way, run);
+  if (!way.path.empty()) add_odometry(way, run, truths);
   return way;
 }
 
@@ -137,8 +162,14 @@ void add_way(Drawing& drawing, const PlottedRun& run, const Way& way, std::size_
       fmt::format("with linespoints linewidth 2 pointtype {} pointsize 0.6 pointinterval {}",
                   kSigns[run.series % kSigns.size()], kPoints / 8),
       ink, run.label);
-  drawing.add(block_of(fmt::format("odometry{}", index), way.odometry),
-              "with lines linewidth 1.4 dashtype '-'", ink, run.label + ", dead reckoning");
+  DataBlock odometry(fmt::format("odometry{}", index));
+  for (const std::vector<Point>& of_task : way.odometry) {
+    if (!odometry.empty()) odometry.interrupt();
+    for (const std::size_t i : thinned(of_task.size(), kPoints))
+      odometry.add(of_task[i].x_m, of_task[i].y_m);
+  }
+  drawing.add(odometry, "with lines linewidth 1.4 dashtype '-'", ink,
+              run.label + ", dead reckoning");
 }
 
 void add_ends(Drawing& drawing, std::span<const PlottedRun> runs, const std::vector<Way>& ways) {
@@ -178,7 +209,8 @@ Bounds bounds_of(const std::vector<Way>& ways, const std::vector<record::Anchor>
   Bounds bounds;
   for (const Way& way : ways) {
     for (const Point& p : way.path) bounds.add(p);
-    for (const Point& p : way.odometry) bounds.add(p);
+    for (const std::vector<Point>& of_task : way.odometry)
+      for (const Point& p : of_task) bounds.add(p);
   }
   for (const record::Anchor& anchor : anchors) {
     for (const Point& p : outline_of(anchor)) bounds.add(p);

@@ -40,6 +40,8 @@ class DataBlock {
   std::string reference() const { return "$" + name_; }
   void add(double x, double y);
   void add(double x, double y, double dx, double dy);
+  /// A line through the points ends here; another one follows.
+  void interrupt() { lines_ += "\n"; }
 
   bool empty() const { return lines_.empty(); }
   std::string script() const;

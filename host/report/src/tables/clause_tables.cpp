@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <tether/campaign/copies.h>
 #include <tether/report/report.h>
 #include <tether/report/verdict.h>
 #include <tether/stats/sample_statistics.h>
@@ -24,10 +25,9 @@ std::vector<std::string> row_of(const judge::ClauseVerdict& clause,
                                 const campaign::ConditionResults& condition) {
   std::size_t n = 0, met = 0;
   std::vector<double> margins;
-  for (const campaign::TrialResult& trial : condition.trials) {
-    const bool counts = trial.outcome != campaign::Outcome::kFailed;
-    for (const judge::ClauseVerdict& own : trial.clauses) {
-      if (!counts || own.uav != clause.uav || own.name != clause.name) continue;
+  for (const campaign::TrialResult* trial : campaign::distinct_flights(condition.trials)) {
+    for (const judge::ClauseVerdict& own : trial->clauses) {
+      if (own.uav != clause.uav || own.name != clause.name) continue;
       ++n;
       met += own.met ? 1U : 0U;
       if (own.margin) margins.push_back(*own.margin);

@@ -317,7 +317,11 @@ Table optimism_table(const campaign::ScenarioResults& scenario) {
 
 std::vector<Table> report_tables(const campaign::CampaignResults& results) {
   std::vector<Table> tables;
-  for (const Sweep& sweep : sweeps_of(results)) tables.push_back(sweep_table(sweep));
+  for (const Sweep& sweep : sweeps_of(results)) {
+    tables.push_back(sweep_table(sweep));
+    if (Table tests = sweep_tests_table(sweep); !tests.rows.empty())
+      tables.push_back(std::move(tests));
+  }
   for (const campaign::ScenarioResults& scenario : results.scenarios) {
     tables.push_back(paper_form_table(scenario));
     tables.push_back(details_table(scenario));

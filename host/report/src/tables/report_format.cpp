@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <cmath>
 
 #include <fmt/format.h>
+
+#include <tether/base/text_table.h>
 
 namespace tether::report {
 
@@ -60,6 +63,19 @@ std::string share_text(double value) {
 
 std::string short_ms(double seconds) {
   return fmt::format("{:.{}f} ms", 1e3 * seconds, seconds < 0.01 ? 1 : 0);
+}
+
+std::string rate_text(double hz) {
+  return fixed(hz, hz < 9.95 ? 1 : 0);
+}
+
+std::string flights_text(std::size_t count) {
+  return fmt::format("{} flight{}", count, count == 1 ? "" : "s");
+}
+
+std::string distance_text(double margin) {
+  if (margin == 0.0) return "at the limit";
+  return fmt::format("{} {}", share_text(std::abs(margin)), margin < 0.0 ? "beyond" : "left");
 }
 
 std::string joined_with_and(const std::vector<std::string>& parts) {

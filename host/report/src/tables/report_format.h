@@ -11,6 +11,8 @@
 namespace tether::report {
 
 inline constexpr const char* kNone = "–";
+/// kWantedSuccess in words.
+inline constexpr const char* kWanted = "9 of 10";
 
 /// Three decimals, as in the paper.
 std::string decimals(double value);
@@ -36,6 +38,12 @@ std::string in_a_sentence(std::string label);
 std::string short_ms(double seconds);
 /// "81 %"
 std::string share_text(double value);
+/// "9.0", "30"
+std::string rate_text(double hz);
+/// "1 flight", "3 flights"
+std::string flights_text(std::size_t count);
+/// Of a margin in shares of a limit: "12 % left", "3 % beyond", "at the limit".
+std::string distance_text(double margin);
 /// "a, b and c"
 std::string joined_with_and(const std::vector<std::string>& parts);
 /// Unexpected events of a run, in one line; empty: none.

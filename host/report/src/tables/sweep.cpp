@@ -7,12 +7,13 @@
 
 #include <fmt/format.h>
 
+#include <tether/campaign/copies.h>
 #include <tether/report/sweep.h>
 #include <tether/sizing/by_levels.h>
 
 // Each point of a sweep is a scenario's results. A series takes those points that differ in the
 // key of the x axis only. A place on that axis is the key's value or, if one of the values is no
-// number, its index.
+// number, its index: names have no order, and no line joins them.
 namespace tether::report {
 namespace {
 
@@ -27,9 +28,17 @@ std::string last_part(const std::string& key) {
   return key.substr(key.rfind('.') + 1);
 }
 
+/// Of distinct flights.
+campaign::Count reached_of(const campaign::ConditionResults& results) {
+  const auto distinct = campaign::distinct_flights(results.trials);
+  const auto reached = std::ranges::count(distinct, campaign::Outcome::kGoalReached,
+                                          &campaign::TrialResult::outcome);
+  return {static_cast<std::size_t>(reached), distinct.size()};
+}
+
 sizing::Share reached_share(const campaign::ConditionResults& results) {
-  return sizing::exact_share(results.count(campaign::Outcome::kGoalReached), results.trials.size(),
-                             kConfidence);
+  const campaign::Count reached = reached_of(results);
+  return sizing::exact_share(reached.of_them, reached.all, kConfidence);
 }
 
 /// Label and unit of a metric, from any trial; nullptr if there is none.
@@ -110,7 +119,8 @@ std::vector<Series> series_of(const Sweep& sweep, const Axis& axis) {
       const std::string title = condition.condition + others;
       auto found = std::ranges::find(all, title, &Series::title);
       if (found == all.end()) found = all.insert(all.end(), {title, {}});
-      if (!condition.trials.empty()) found->points.emplace_back(place_of(axis, *point), &condition);
+      if (reached_of(condition).all > 0)
+        found->points.emplace_back(place_of(axis, *point), &condition);
     }
   }
   for (Series& series : all)
@@ -166,7 +176,7 @@ Table sweep_table(const Sweep& sweep) {
       row.push_back(fmt::format("{} of {}", condition.count(campaign::Outcome::kGoalReached),
                                 condition.trials.size()));
       row.emplace_back(kNone);
-      if (!condition.trials.empty()) {
+      if (reached_of(condition).all > 0) {
         const sizing::Share share = reached_share(condition);
         row.back() = fmt::format("{:.0f} to {:.0f} %", 100.0 * share.low, 100.0 * share.high);
       }
@@ -181,6 +191,49 @@ Table sweep_table(const Sweep& sweep) {
   return table;
 }
 
+Table sweep_tests_table(const Sweep& sweep) {
+  const Axis axis = axis_of(sweep);
+  Table table;
+  table.title = fmt::format("Differences between the values of {}", axis.label);
+  table.text_columns = 3;
+  table.headings = {single_headings(
+      {"Condition", "Value", "Other value", "Goal reached", "Other", "p, corrected"})};
+  struct Pair {
+    const Series* series;
+    std::size_t a, b;
+  };
+  const std::vector<Series> all = series_of(sweep, axis);
+  std::vector<Pair> pairs;
+  std::vector<double> p_values;
+  for (const Series& series : all)
+    for (std::size_t b = 1; b < series.points.size(); ++b)
+      for (std::size_t a = 0; a < b; ++a) {
+        pairs.push_back({&series, a, b});
+        p_values.push_back(campaign::fisher_exact(reached_of(*series.points[a].second),
+                                                  reached_of(*series.points[b].second)));
+      }
+  const auto value_at = [&](double place) {
+    const auto at = std::ranges::find(axis.places, place) - axis.places.begin();
+    return short_value(axis.values[static_cast<std::size_t>(at)]);
+  };
+  const auto count_text = [](const campaign::ConditionResults& results) {
+    const campaign::Count reached = reached_of(results);
+    return fmt::format("{} of {}", reached.of_them, reached.all);
+  };
+  const std::vector<double> corrected = campaign::holm(p_values);
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const auto& [place_a, a] = pairs[i].series->points[pairs[i].a];
+    const auto& [place_b, b] = pairs[i].series->points[pairs[i].b];
+    table.rows.push_back({pairs[i].series->title, value_at(place_a), value_at(place_b),
+                          count_text(*a), count_text(*b), p_value(corrected[i])});
+  }
+  table.notes = {
+      "Fisher's exact test of the numbers of different flights that reach the goal, "
+      "corrected for all rows by Holm's method. Below 0.05, chance does not explain the "
+      "difference."};
+  return table;
+}
+
 std::optional<Plot> sweep_plot(const Sweep& sweep) {
   const Axis axis = axis_of(sweep);
   const std::vector<Series> all = series_of(sweep, axis);
@@ -191,8 +244,10 @@ std::optional<Plot> sweep_plot(const Sweep& sweep) {
       const sizing::Share share = reached_share(*results);
       shares.add(place, share.estimate, share.low, share.high);
     }
-    drawing.add(shares, "with yerrorlines pointtype 7 pointsize 0.6 linewidth 1.5", series_ink(i),
-                all[i].title);
+    drawing.add(shares,
+                fmt::format("with {} pointtype 7 pointsize 0.6 linewidth 1.5",
+                            axis.is_numeric ? "yerrorlines" : "yerrorbars"),
+                series_ink(i), all[i].title);
   }
   if (drawing.empty()) return std::nullopt;
   return Plot{frame_script(frame_of(axis, all.size(), "goal reached")) + axis_script(axis) +
@@ -218,8 +273,10 @@ std::optional<Plot> sweep_plot(const Sweep& sweep, const std::string& metric) {
       for (const double one : values) trials.add(place, one);
       drawn.insert(drawn.end(), values.begin(), values.end());
     }
-    drawing.add(means, "with linespoints pointtype 7 pointsize 0.7 linewidth 1.5", series_ink(i),
-                all[i].title);
+    drawing.add(means,
+                fmt::format("with {} pointtype 7 pointsize 0.7 linewidth 1.5",
+                            axis.is_numeric ? "linespoints" : "points"),
+                series_ink(i), all[i].title);
     drawing.add(trials, "with points pointtype 6 pointsize 0.4", series_ink(i), "");
   }
   if (drawing.empty()) return std::nullopt;

@@ -170,5 +170,28 @@ TEST(Pace, OfSeveralUavsIsThatOfTheSlowest) {
   EXPECT_EQ(pace_of(record)->uav, "uav1");
 }
 
+TEST(Pace, IsTooSlowForItsCameraOnlyIfComputingIsTheReason) {
+  Pace pace{.camera = "camera", .read_hz = 9.0, .offered_hz = 30.0, .p95_s = 0.11};
+  EXPECT_TRUE(pace.is_too_slow_for_camera());
+  pace.p95_s = 0.001;
+  EXPECT_FALSE(pace.is_too_slow_for_camera()) << "it sleeps";
+  pace.p95_s = 0.04;
+  pace.read_hz = 30.0;
+  EXPECT_FALSE(pace.is_too_slow_for_camera()) << "it reads every image nevertheless";
+  pace.offered_hz.reset();
+  EXPECT_FALSE(pace.is_too_slow_for_camera()) << "the camera has no rate";
+}
+
+TEST(Pace, CountsTheMessagesThatArrive) {
+  record::Record record = record_of_reads();
+  EXPECT_FALSE(pace_of(record)->has_radio);
+  record.header.radio.model = "ideal";
+  for (const char* outcome : {"delivered", "noise", "delivered"})
+    record.radio.emplace_back().message.outcome = outcome;
+  EXPECT_TRUE(pace_of(record)->has_radio);
+  EXPECT_EQ(pace_of(record)->messages, 3u);
+  EXPECT_EQ(pace_of(record)->messages_arrived, 2u);
+}
+
 }  // namespace
 }  // namespace tether::report

@@ -8,6 +8,7 @@
 namespace tether::report {
 namespace {
 
+using testing::Contains;
 using testing::HasSubstr;
 using testing::SizeIs;
 
@@ -89,23 +90,50 @@ TEST(SizeReport, NamesTheRecordWithoutWhichComputingTimesAreNotKnown) {
 }
 
 TEST(SizeReport, ABoardSufficesIfAllOfItsCalibrationDoes) {
-  sizing::Answer answer;
+  SizedCondition sized;
+  sizing::Answer& answer = sized.answer;
   answer.threshold = {3.1, 2.7, 3.6};
-  EXPECT_EQ(verdict({"a", 2.6}, answer), BoardVerdict::kSuffices);
-  EXPECT_EQ(verdict({"a", 2.6, 2.5, 2.8}, answer), BoardVerdict::kUndecided);
-  EXPECT_EQ(verdict({"a", 3.0}, answer), BoardVerdict::kUndecided);
-  EXPECT_EQ(verdict({"a", 3.7, 3.5, 4.0}, answer), BoardVerdict::kUndecided);
-  EXPECT_EQ(verdict({"a", 3.7}, answer), BoardVerdict::kDoesNot);
+  EXPECT_EQ(verdict({"a", 2.6}, sized), BoardVerdict::kSuffices);
+  EXPECT_EQ(verdict({"a", 2.6, 2.5, 2.8}, sized), BoardVerdict::kUndecided);
+  EXPECT_EQ(verdict({"a", 3.0}, sized), BoardVerdict::kUndecided);
+  EXPECT_EQ(verdict({"a", 3.7, 3.5, 4.0}, sized), BoardVerdict::kUndecided);
+  EXPECT_EQ(verdict({"a", 3.7}, sized), BoardVerdict::kDoesNot);
   answer = {};
   answer.is_above = true;
   answer.threshold = {10.0, 10.0, std::numeric_limits<double>::infinity()};
-  EXPECT_EQ(verdict({"a", 10.0}, answer), BoardVerdict::kSuffices);
-  EXPECT_EQ(verdict({"a", 11.0}, answer), BoardVerdict::kUndecided);
+  EXPECT_EQ(verdict({"a", 10.0}, sized), BoardVerdict::kSuffices);
+  EXPECT_EQ(verdict({"a", 11.0}, sized), BoardVerdict::kUndecided);
   answer = {};
   answer.is_below = true;
   answer.threshold = {1.0, 0.0, 1.0};
-  EXPECT_EQ(verdict({"a", 1.0}, answer), BoardVerdict::kDoesNot);
-  EXPECT_EQ(verdict({"a", 0.5}, answer), BoardVerdict::kUndecided);
+  EXPECT_EQ(verdict({"a", 1.0}, sized), BoardVerdict::kUndecided) << "whether speed matters";
+  for (int i = 0; i < 10; ++i) sized.flights.push_back({1.0 + i, i < 5, std::nullopt});
+  EXPECT_EQ(verdict({"a", 1.0}, sized), BoardVerdict::kDoesNot);
+  EXPECT_EQ(verdict({"a", 0.5}, sized), BoardVerdict::kUndecided);
+}
+
+TEST(SizeReport, BlamesSpeedOnlyIfFasterFlightsReachTheGoalMoreOften) {
+  SizeReport report = sample_size();
+  SizedCondition& sized = report.synchronised;
+  sized.answer.is_below = true;
+  EXPECT_TRUE(speed_matters(sized));
+  EXPECT_THAT(size_sentences(report)[0], testing::StartsWith("Not sufficient: already at"));
+  for (sizing::Flight& flight : sized.flights) flight.reached = false;
+  EXPECT_FALSE(speed_matters(sized));
+  EXPECT_THAT(size_sentences(report)[0], testing::StartsWith("Goal missed: already at"));
+  EXPECT_THAT(size_advice(report), testing::Not(Contains(HasSubstr("peed up"))));
+}
+
+TEST(SizeReport, DoesNotCountCopies) {
+  SizeReport report = sample_size();
+  SizedCondition& sized = report.synchronised;
+  campaign::TrialResult trial = sized.trials[0];
+  trial.flight_digest = sized.trials[0].flight_digest = "0123456789abcdef";
+  EXPECT_TRUE(add_flight(sized, trial, sized.flights[0].slowdown));
+  EXPECT_FALSE(add_flight(sized, trial, 9.0)) << "another computer";
+  EXPECT_EQ(sized.copies, 1u);
+  EXPECT_EQ(sized.trials.size(), 11u);
+  EXPECT_THAT(size_sentences(report), Contains(HasSubstr("Not counted: 1 flight more, ")));
 }
 
 campaign::MetricValue limited(double value, std::optional<double> max, std::optional<double> min) {

@@ -64,7 +64,7 @@ TEST_F(Junit, HasACaseForTheOutcomeEachMetricAndEachClause) {
   const XMLElement& property = *suite.FirstChildElement("properties")->FirstChildElement();
   EXPECT_STREQ(property.Attribute("name"), "verdict");
   EXPECT_THAT(property.Attribute("value"),
-              StartsWith("Not fast enough in this flight: on “target”"));
+              StartsWith("Goal missed: “early” and time required ≤ 30 s, on “target”. "));
   EXPECT_STREQ(suite.Attribute("timestamp"), "2024-05-01T10:00:00");
   const std::string output = suite.FirstChildElement("system-out")->GetText();
   EXPECT_THAT(output, HasSubstr("[seed-0001 / near]\nmargin: 0.5 m\n"));

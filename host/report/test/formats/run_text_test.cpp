@@ -116,8 +116,8 @@ TEST(RunText, BeginsWithTheAnswer) {
   result.metrics[0].max = 3.0;
   result.outcome = campaign::Outcome::kGoalMissed;
   EXPECT_THAT(run_text(result, scratch.path("run")),
-              testing::StartsWith("Not fast enough in this flight: on “host” the flight misses the "
-                                  "goal (missed: time required ≤ 3 s)."));
+              testing::StartsWith("Goal missed: time required ≤ 3 s, on “host”. No faster "
+                                  "condition was flown"));
 }
 
 TEST(RunText, NamesTheRecordOnlyIfThereIsOne) {
@@ -128,20 +128,27 @@ TEST(RunText, NamesTheRecordOnlyIfThereIsOne) {
               HasSubstr("  record     " + record.string() + "\n"));
 }
 
-TEST(RunText, SaysThatAFailedRunHasNoClauseEvaluatedAndLeavesItsReasonToTheError) {
+TEST(RunText, SaysWhatTheTimeOfAnUnstampedClockIncludes) {
   const ScratchFolder scratch;
   campaign::TrialResult result = flight();
   result.clock = "unstamped";
+  EXPECT_THAT(run_text(result, scratch.path("run")),
+              HasSubstr("  clock      unstamped: the coordinator measured the SUT's time, which "
+                        "includes the link's\n"));
+}
+
+TEST(RunText, OfAFailedRunHasNoTableOfNothing) {
+  const ScratchFolder scratch;
+  campaign::TrialResult result = flight();
   result.metrics = {metric("Time required", "s", std::nullopt)};
   result.clauses = {{.uav = "uav1", .name = "early"}};
   campaign::invalidate(result, "the SUT was lost");
   result.metrics[0].missing_because = result.reason;
-  const std::string text = summary(run_text(result, scratch.path("run")));
-  EXPECT_THAT(text, testing::StartsWith("turn under \"host\", seed 7: failed\n"
-                                        "  Time required  none\n"
-                                        "  early          not evaluated\n"));
-  EXPECT_THAT(text, HasSubstr("  clock          unstamped: the coordinator measured the SUT's "
-                              "time, which includes the link's\n"));
+  result.end = "sut_lost";
+  EXPECT_EQ(run_text(result, scratch.path("run")),
+            "No answer: the SUT was lost.\n  → Fix this, then fly again.\n\n"
+            "turn under \"host\", seed 7: failed\n"
+            "  ended  at ST 1.561 s, after 50 interactions\n");
 }
 
 }  // namespace

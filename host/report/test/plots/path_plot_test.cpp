@@ -54,6 +54,20 @@ TEST(PathPlot, PlacesDeadReckoningAtTheTrueStart) {
   EXPECT_THAT(path_plot({{{&record, "uav1", "target", 1}}})->script, Not(HasSubstr("odometry")));
 }
 
+TEST(PathPlot, BeginsTheDeadReckoningOfEachTaskWhereTheUavIs) {
+  record::Record record = sample_record(4);      // at 0, 0.1, 0.2 and 0.3 m
+  record.ground_truth[2].message.q_WB[0] = 0.0;  // half a turn
+  record.ground_truth[2].message.q_WB[3] = 1.0;
+  const auto note = [](const char* topic, const char* json) {
+    return record::Annotation{"uav1", ExecTime{}, topic, json};
+  };
+  record.annotations[1].message = note("task", R"({"event":"start","task":"go_to"})");
+  record.annotations[2].message = note("odometry", R"({"x_m":0.5,"y_m":0,"yaw_rad":0})");
+  record.annotations[3].message = note("odometry", R"({"x_m":0.7,"y_m":0,"yaw_rad":0})");
+  EXPECT_THAT(path_plot({{{&record, "uav1", "target", 1}}})->script,
+              HasSubstr("$odometry0 << END\n0 0\n\n0.2 0\n0 0\nEND\n"));
+}
+
 // The numbers of the expression's groups.
 std::vector<double> numbers(const std::string& script, const std::string& expression) {
   std::smatch m;

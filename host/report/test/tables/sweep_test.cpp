@@ -59,6 +59,32 @@ TEST(SweepPlot, PlacesFilesByTheirOrder) {
   EXPECT_THAT(script, Not(HasSubstr("/x/")));
 }
 
+// Names have no order.
+TEST(SweepPlot, JoinsNumbersByLinesButNotNames) {
+  const auto plots = [](const char* first, const char* second) {
+    const auto a = point({{"f", first}}, {1}), b = point({{"f", second}}, {2});
+    const Sweep sweep{"turn", {&a, &b}};
+    return sweep_plot(sweep)->script + sweep_plot(sweep, "time_required")->script;
+  };
+  EXPECT_THAT(plots("1", "2"),
+              testing::AllOf(HasSubstr("with yerrorlines"), HasSubstr("with linespoints")));
+  EXPECT_THAT(plots("wide", "narrow"),
+              testing::AllOf(HasSubstr("with yerrorbars"), HasSubstr("with points pointtype 7"),
+                             Not(HasSubstr("lines "))));
+}
+
+// p = 2 / 70 = 0.0286 for 4 of 4 against 0 of 4; of three pairs, two are as unlikely.
+TEST(SweepTests, AreFishersCorrectedByHolm) {
+  auto none = point({{"f", "4"}}, {1, 1, 1, 1});
+  for (auto& trial : none.conditions[0].trials) trial.outcome = campaign::Outcome::kGoalMissed;
+  const auto all = point({{"f", "1"}}, {1, 1, 1, 1}), also = point({{"f", "2"}}, {1, 1, 1, 1});
+  EXPECT_THAT(sweep_tests_table({"turn", {&all, &also, &none}}).rows,
+              ElementsAre(ElementsAre("host", "1", "2", "4 of 4", "4 of 4", "1.000"),
+                          ElementsAre("host", "1", "4", "4 of 4", "0 of 4", "0.086"),
+                          ElementsAre("host", "2", "4", "4 of 4", "0 of 4", "0.086")));
+  EXPECT_TRUE(sweep_tests_table({"turn", {&all}}).rows.empty());
+}
+
 TEST(SweepPlot, NeedsAValue) {
   auto a = point({{"f", "1"}}, {1});
   EXPECT_FALSE(sweep_plot({"turn", {&a}}, "oscillations"));

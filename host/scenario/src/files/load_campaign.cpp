@@ -1,3 +1,4 @@
+#include "files/named_file.h"
 #include "files/settings.h"
 
 #include <algorithm>
@@ -148,14 +149,14 @@ CampaignScenario read_scenario(const toml::Table& root, const toml::Table& table
                                const Settings& point) {
   constexpr std::array<std::string_view, 5> kTables = {"I", "II", "III", "IV", "V"};
   CampaignScenario entry;
-  entry.scenario = load_point(root, table.existing_file("file"), point);
+  entry.scenario = load_point(root, named_file(table, "file", ShippedKind::kScenario), point);
   if (!point.empty()) {
     const std::string& name = entry.scenario.name;
     entry.swept_from = name.substr(0, name.size() - name_suffix(point).size());
   }
   entry.conditions = read_conditions(table, entry.scenario);
   if (table.has("profile")) {
-    entry.profile = table.existing_file("profile");
+    entry.profile = named_file(table, "profile", ShippedKind::kProfile);
     lay_profile(entry.scenario, load_profile(entry.profile));
   }
   if (table.has("paper_table")) entry.paper_table = kTables[table.choice("paper_table", kTables)];

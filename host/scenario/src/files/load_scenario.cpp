@@ -1,3 +1,5 @@
+#include "files/named_file.h"
+#include "files/scenario_keys.h"
 #include "files/settings.h"
 #include "tables/read_clock_rate.h"
 #include "tables/read_computers.h"
@@ -42,7 +44,7 @@ void sort_files(Scenario& scenario) {
 
 std::optional<Profile> read_profile(const toml::Table& table, Scenario& scenario) {
   if (!table.has("profile")) return std::nullopt;
-  Profile profile = load_profile(table.existing_file("profile"));
+  Profile profile = load_profile(named_file(table, "profile", ShippedKind::kProfile));
   add_files(scenario, profile.files);
   return profile;
 }
@@ -66,7 +68,7 @@ UavSetup read_uav(const toml::Table& table, const std::optional<Sut>& default_su
   constexpr toml::Range kLatency_ms{.min = 0.0, .max = 10'000.0};
   UavSetup uav;
   uav.placement.name = table.identifier("name");
-  uav.placement.model = table.existing_file("model");
+  uav.placement.model = named_file(table, "model", ShippedKind::kModel);
   scenario.files.push_back(uav.placement.model);
   const auto position_m = table.numbers("position_m", 3, kCoordinate_m);
   uav.placement.p_WB = {position_m[0], position_m[1], position_m[2]};
@@ -76,7 +78,7 @@ UavSetup read_uav(const toml::Table& table, const std::optional<Sut>& default_su
   uav.profile = read_profile(table, scenario);
   read_sensors(table, scenario, uav);
   if (table.has("energy")) {
-    uav.energy = load_energy(table.existing_file("energy"));
+    uav.energy = load_energy(named_file(table, "energy", ShippedKind::kEnergy));
     scenario.files.push_back(uav.energy->file);
   }
   uav.seat = read_seat(table, scenario);
@@ -91,9 +93,7 @@ UavSetup read_uav(const toml::Table& table, const std::optional<Sut>& default_su
 void read_uavs(const toml::Table& root, Scenario& scenario) {
   const std::optional<Sut> default_sut = read_default_sut(root, scenario);
   std::set<std::string> names;
-  for (const toml::Table& table : root.tables(
-           "uav", {"name", "model", "position_m", "yaw_deg", "yaw_spread_deg", "command_latency_ms",
-                   "profile", "sensors", "energy", "sut", "target", "pinned_core"})) {
+  for (const toml::Table& table : root.tables("uav", kUavKeys)) {
     scenario.uavs.push_back(read_uav(table, default_sut, scenario));
     const std::string& name = scenario.uavs.back().placement.name;
     if (!names.insert(name).second) {
@@ -136,7 +136,7 @@ void read_target(const toml::Table& table, Condition& condition, Scenario& scena
     if (table.has(key))
       table.fail(key, "is specified by the target's file. Remove this key, or 'target'.");
   }
-  Target target = load_target(table.existing_file("target"));
+  Target target = load_target(named_file(table, "target", ShippedKind::kTarget));
   if (const std::string why = why_not_on(condition, target); !why.empty()) {
     table.fail("target", fmt::format("cannot be used here: {}", why));
   }
@@ -182,16 +182,17 @@ Condition read_condition(const toml::Table& table, Scenario& scenario) {
 
 void read_conditions(const toml::Table& root, Scenario& scenario) {
   std::map<std::string, std::string> slugs;
-  for (const toml::Table& table : root.tables(
-           "condition", {"name", "description", "policy", "clock", "cpu_factor", "computing_ms",
-                         "real_time_factor", "profile", "target", "simulator", "timing", "mode",
-                         "counted", "unknown_stages", "shared", "radio"})) {
+  for (const toml::Table& table : root.tables("condition", kConditionKeys)) {
     scenario.conditions.push_back(read_condition(table, scenario));
     if (auto profile = read_profile(table, scenario)) {
       scenario.conditions.back().profiles.push_back(std::move(*profile));
     }
     const std::string& name = scenario.conditions.back().name;
     const auto [other, is_new] = slugs.emplace(slug(name), name);
+    if (!is_new && other->second == name)
+      table.fail("name", fmt::format("is \"{}\", which is also the name of another condition. "
+                                     "Names must be unique.",
+                                     name));
     if (!is_new) {
       table.fail("name", fmt::format("is \"{}\", too similar to the condition \"{}\". Names must "
                                      "differ in their letters and digits.",
@@ -311,19 +312,26 @@ void read_record(const toml::Table& root, Scenario& scenario) {
   const toml::Table record =
       root.table("record", {"ground_truth_period_ms", "images", "image_period_ms"});
   constexpr toml::Range kImagePeriod_ms{.min = 0.0, .max = 1e6};
-  const toml::Range period_ms{.min = to_seconds(scenario.step) * 1e3, .max = 1e6};
+  const toml::Range period_ms{.min = 1e3 * to_seconds(scenario.step.value_or(sim::kLeastStep)),
+                              .max = 1e6};
   scenario.ground_truth_period =
       record.duration_or("ground_truth_period_ms", period_ms, scenario.ground_truth_period);
+  if (record.has("ground_truth_period_ms"))
+    scenario.ground_truth_at = record.where("ground_truth_period_ms");
   scenario.record_images = record.boolean_or("images", scenario.record_images);
   scenario.image_period =
       record.duration_or("image_period_ms", kImagePeriod_ms, scenario.image_period);
 }
 
 void read_limits(const toml::Table& root, Scenario& scenario) {
-  constexpr toml::Range kStep_ms{.min = 0.01, .max = 100.0};
+  constexpr toml::Range kStep_ms{.min = 1e3 * to_seconds(sim::kLeastStep),
+                                 .max = 1e3 * to_seconds(sim::kMostStep)};
   constexpr toml::Range kSpan_s{.min = 0.0, .max = kLongestRun_s, .above_min = true};
   constexpr toml::Range kSpeed_m_s{.min = 0.0, .with_inf = true};
-  scenario.step = root.duration_or("step_ms", kStep_ms, scenario.step);
+  if (root.has("step_ms")) {
+    scenario.step = root.duration("step_ms", kStep_ms);
+    scenario.step_at = root.where("step_ms");
+  }
   scenario.time_limit = root.duration("time_limit_s", kSpan_s);
   scenario.hang_limit = root.duration_or("hang_limit_s", kSpan_s, scenario.hang_limit);
   scenario.connect_limit = root.duration_or("connect_limit_s", kSpan_s, scenario.connect_limit);
@@ -365,13 +373,11 @@ Scenario load_scenario(const std::filesystem::path& file, const std::vector<Sett
   for (const Setting& setting : settings)
     if (setting.key != kUavCount && !apply(setting, document)) of_profiles.push_back(setting);
   scenario.settings = settings;
-  const toml::Table root =
-      document.root({"name", "description", "world", "step_ms", "time_limit_s", "hang_limit_s",
-                     "connect_limit_s", "max_contact_speed_m_s", "anchors", "target", "uav", "sut",
-                     "condition", "metric", "record", "radio"});
+  const toml::Table root = document.root();
+  root.require_keys_in(kScenarioKeys);
   scenario.name = root.identifier("name") + name_suffix(settings);
   scenario.description = root.text_or("description", "");
-  scenario.world = root.existing_file("world");
+  scenario.world = named_file(root, "world", ShippedKind::kWorld);
   scenario.files = {scenario.file, scenario.world};
   read_limits(root, scenario);
   read_anchors(root, scenario);

@@ -74,18 +74,23 @@ std::string read_program_folder(const toml::Table& root, const Target& target) {
 }
 
 std::array<std::uint64_t, kWorkClasses> read_costs(const toml::Table& root) {
-  constexpr toml::Range kCost_ns{.min = 0.0, .max = 1e4};
+  constexpr double kLeast_ns = 1e-3, kMost_ns = 1e4;
   if (!root.has("cost_ns"))
     root.fail("cost_ns", "is missing. The clock \"counted\" needs the table [cost_ns].");
   std::vector<std::string_view> keys;
   for (const char* key : kWorkClassNames) keys.emplace_back(key);
   const toml::Table table = root.table("cost_ns", keys);
   std::array<std::uint64_t, kWorkClasses> units{};
-  std::uint64_t sum = 0;
-  for (std::size_t kind = 0; kind < kWorkClasses; ++kind)
-    sum += units[kind] = static_cast<std::uint64_t>(
-        std::llround(table.number(keys[kind], kCost_ns) * static_cast<double>(kCostUnitsPerNs)));
-  if (sum == 0) table.fail("has no cost above 0, so that the program would compute in no time.");
+  for (std::size_t kind = 0; kind < kWorkClasses; ++kind) {
+    const double cost_ns = table.number(keys[kind], {.min = 0.0, .max = kMost_ns});
+    if (cost_ns < kLeast_ns)
+      table.fail(keys[kind],
+                 fmt::format("is {} ns, so that this work would take no time. The least cost is {} "
+                             "ns; `tether-sut calibrate --counted` finds costs of a machine.",
+                             cost_ns, kLeast_ns));
+    units[kind] =
+        static_cast<std::uint64_t>(std::llround(cost_ns * static_cast<double>(kCostUnitsPerNs)));
+  }
   return units;
 }
 

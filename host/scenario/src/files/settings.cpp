@@ -1,11 +1,16 @@
 #include "files/settings.h"
 
+#include "files/scenario_keys.h"
+
 #include <algorithm>
+#include <array>
 #include <charconv>
+#include <span>
 
 #include <fmt/format.h>
 
 #include <tether/base/error.h>
+#include <tether/base/suggest.h>
 
 namespace tether::scenario {
 
@@ -52,11 +57,46 @@ void keep_first_uavs(Scenario& scenario, const std::string& count) {
   }
 }
 
+namespace {
+
+struct KeyTable {
+  std::string from;  ///< before a key that is given without the path of its table
+  std::span<const std::string_view> keys;
+};
+const std::array<KeyTable, 4> kKeyTables = {
+    KeyTable{"", kScenarioKeys}, KeyTable{"condition.", kConditionKeys}, KeyTable{"uav.", kUavKeys},
+    KeyTable{"target.", kComputerKeys}};
+
+/// Not parameters, sensors and metrics, whose names are free: a new one may be a typing error.
+bool may_be_added(const KeyTable& table, const std::string& key) {
+  const auto dots = std::ranges::count(table.from + key, '.');
+  const std::string_view first = std::string_view(key).substr(0, key.find('.'));
+  const bool is_free = first == "metric" || first == "sensors";
+  return dots < 2 && !is_free && std::ranges::count(table.keys, first) > 0;
+}
+
+}  // namespace
+
 bool apply(const Setting& setting, toml::Document& scenario) {
-  for (const char* from : {"", "condition.", "uav.", "target."})
-    if (scenario.replace(from + setting.key, setting.value) > 0) return true;
+  for (const KeyTable& table : kKeyTables)
+    if (scenario.replace(table.from + setting.key, setting.value) > 0) return true;
+  for (const KeyTable& table : kKeyTables)
+    if (may_be_added(table, setting.key))
+      return scenario.add(table.from + setting.key, setting.value) > 0;
   return false;
 }
+
+namespace {
+
+std::string suggestion(const std::string& key) {
+  std::vector<std::string_view> keys;
+  for (const KeyTable& table : kKeyTables)
+    keys.insert(keys.end(), table.keys.begin(), table.keys.end());
+  const std::string_view near = nearest(key, keys);
+  return near.empty() ? "." : fmt::format("; did you mean '{}'?", near);
+}
+
+}  // namespace
 
 void apply_to_profiles(const std::vector<Setting>& settings, Scenario& scenario) {
   if (settings.empty()) return;
@@ -71,10 +111,10 @@ void apply_to_profiles(const std::vector<Setting>& settings, Scenario& scenario)
   for (const Setting& setting : settings)
     if (!replaced.contains(setting.key))
       throw Error(ErrorCode::kUsage, {scenario.file.string()},
-                  fmt::format("has no value '{}' to replace. Give the path of a key that the file "
+                  fmt::format("has no value '{}' to replace{} Give the path of a key that the file "
                               "or a profile of its sensors has, such as time_limit_s, "
                               "condition.cpu_factor, sut.parameters.KEY or sensors.camera.rate_hz",
-                              setting.key))
+                              setting.key, suggestion(setting.key)))
           .about(setting.key);
 }
 

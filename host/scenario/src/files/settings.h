@@ -10,7 +10,8 @@
 
 namespace tether::scenario {
 
-/// Replaces the value in the file of a scenario. @return false if the file does not have it.
+/// Replaces the value in the file of a scenario, or adds it if the file lacks a key that it may
+/// have. @return false if there is no such key.
 bool apply(const Setting& setting, toml::Document& scenario);
 /// Keeps as many UAVs as `count` says, the first ones of the file, with the metrics and computers
 /// that are theirs. @throws Error(kUsage), about kUavCount, if there are not so many.

@@ -1,5 +1,7 @@
 #include "tables/read_computers.h"
 
+#include "files/named_file.h"
+#include "files/scenario_keys.h"
 #include "tables/read_clock_rate.h"
 
 #include <algorithm>
@@ -20,7 +22,7 @@ Computer read_computer(const toml::Table& table, Scenario& scenario) {
     for (const char* key : {"clock", "cpu_factor", "computing_ms"})
       if (table.has(key))
         table.fail(key, "is specified by the target's file. Remove this key, or 'file'.");
-    Target target = load_target(table.existing_file("file"));
+    Target target = load_target(named_file(table, "file", ShippedKind::kTarget));
     scenario.files.push_back(target.file);
     computer.clock = target.clock;
     computer.cpu_factor = target.cpu_factor;
@@ -54,8 +56,8 @@ Computer read_computer(const toml::Table& table, Scenario& scenario) {
 }  // namespace
 
 void read_computers(const toml::Table& root, Scenario& scenario) {
-  for (const toml::Table& table : root.tables_or_none(
-           "target", {"name", "file", "clock", "cpu_factor", "computing_ms", "cores", "by_hand"})) {
+  if (!root.has("target")) return;
+  for (const toml::Table& table : root.tables("target", kComputerKeys)) {
     Computer computer = read_computer(table, scenario);
     if (std::ranges::count(scenario.computers, computer.name, &Computer::name) > 0)
       table.fail(

@@ -1,8 +1,11 @@
 #include "tables/read_sut.h"
 
+#include "files/named_file.h"
+
 #include <algorithm>
 #include <array>
 #include <map>
+#include <sstream>
 
 #include <fmt/format.h>
 
@@ -52,8 +55,20 @@ Parameters read_parameters(const toml::Table& sut, std::vector<std::filesystem::
   return parameters;
 }
 
+// The words of a command line as the elements of an array.
+std::string in_quotes(const std::string& line) {
+  std::istringstream words(line);
+  std::string all;
+  for (std::string word; words >> word;) all += (all.empty() ? "\"" : ", \"") + word + '"';
+  return all;
+}
+
 // Whether the program exists is checked when the run starts: it may exist on a board only.
 std::vector<std::string> read_command(const toml::Table& sut, const std::filesystem::path& folder) {
+  if (sut.has("command") && sut.is_text("command"))
+    sut.fail("command", fmt::format("must be an array of the program and its arguments. Write "
+                                    "command = [{}]",
+                                    in_quotes(sut.text("command"))));
   std::vector<std::string> command = sut.texts("command");
   if (command.empty()) sut.fail("command", "is empty. Name a program.");
   std::string& program = command.front();
@@ -71,7 +86,7 @@ void read_mission(const toml::Table& table, Scenario& scenario, Sut& sut) {
   for (const char* other : {"parameters", "files"})
     if (table.has(other) && table.table(other).has("mission"))
       table.fail("mission", fmt::format("is already a key of '{}'", other));
-  const std::filesystem::path file = table.existing_file("mission");
+  const std::filesystem::path file = named_file(table, "mission", ShippedKind::kMission);
   sut.mission = mission::load_mission(file);
   scenario.files.push_back(file);
   sut.parameters.emplace_back("mission", file.string());

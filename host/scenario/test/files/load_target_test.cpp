@@ -92,9 +92,15 @@ TEST_F(LoadTarget, RefusesWrongValuesOfACountedTarget) {
                    [&] { load(replaced(kCountedTarget, change.from, change.to)); });
   const std::string head = kCountedTarget.substr(0, kCountedTarget.find("[cost_ns]"));
   expect_refusal(0, "cost_ns", [&] { load(head); });
-  std::string free = head + "[cost_ns]\n";
-  for (const char* key : kWorkClassNames) free += std::string(key) + " = 0\n";
-  EXPECT_EQ(bad_file_error([&] { load(free); }).where().line, 6);
+}
+
+TEST_F(LoadTarget, RefusesWorkThatTakesNoTime) {
+  expect_refusal(13, "scalar_float", [&] {
+    load(replaced(kCountedTarget, "scalar_float = 1.3", "scalar_float = 0.0"));
+  });
+  expect_refusal(13, "scalar_float", [&] {
+    load(replaced(kCountedTarget, "scalar_float = 1.3", "scalar_float = 0.0009"));
+  });
 }
 
 TEST_F(LoadTarget, IsThisHostByDefault) {

@@ -25,6 +25,24 @@ TEST_F(Settings, ReplaceValuesByTheirPathFromTheTopAConditionOrAUav) {
   EXPECT_EQ(load({{"yaw_spread_deg", "0"}}).uavs.front().yaw_spread_rad, 0.0);
 }
 
+TEST_F(Settings, AddKeysThatTheFileLacks) {
+  EXPECT_EQ(load({{"connect_limit_s", "7"}}).connect_limit, std::chrono::seconds(7));
+  EXPECT_EQ(load({{"max_contact_speed_m_s", "inf"}}).max_contact_speed_m_s,
+            std::numeric_limits<double>::infinity());
+  EXPECT_EQ(load({{"radio.exponent", "3"}}).files, load({}).files);
+  const Error wrong = bad_file_error([&] { load({{"connect_limit_s", "-7"}}); });
+  EXPECT_EQ(wrong.where().line, 0) << "the file has no such line";
+  const Error error = bad_file_error([&] { load({{"condition.cpu_factr", "2"}}); });
+  EXPECT_EQ(error.subject(), "cpu_factr");
+}
+
+TEST_F(Settings, ReplaceArrays) {
+  EXPECT_EQ(load({{"uav.position_m", "[1, 2, 3.5]"}}).uavs.at(1).placement.p_WB,
+            (uav::Vec3{1, 2, 3.5}));
+  EXPECT_EQ(load({{"anchors", "[\"blue_box\", \"red_box\", \"tree\"]"}}).anchors.size(), 3u);
+  EXPECT_EQ(bad_file_error([&] { load({{"uav.position_m", "[1, 2]"}}); }).subject(), "position_m");
+}
+
 TEST_F(Settings, AreInTheScenariosName) {
   const std::string name = load({}).name;
   EXPECT_EQ(load({{"time_limit_s", "7"}, {"condition.cpu_factor", "0.5"}}).name,

@@ -139,8 +139,8 @@ std::optional<energy::Status> Dynamics::battery(std::size_t uav) const {
   return flights_[uav].meter->status();
 }
 
-void Dynamics::computed(std::size_t uav, Duration busy) {
-  if (flights_[uav].meter) flights_[uav].meter->computed(busy);
+void Dynamics::computing(std::size_t uav, double cores) {
+  if (flights_[uav].meter) flights_[uav].meter->computing(cores);
 }
 
 uav::BodyState Dynamics::body_state(std::size_t uav) const {

@@ -40,7 +40,7 @@ class Dynamics {
   /// Whether more contacts occurred at once than the engine keeps; those were ignored.
   bool contacts_dropped() const;
   std::optional<energy::Status> battery(std::size_t uav) const;
-  void computed(std::size_t uav, Duration busy);
+  void computing(std::size_t uav, double cores);
 
  private:
   struct Flight {

@@ -310,7 +310,8 @@ raster::Mesh MeshFiles::load(const MeshGeometry& mesh, const TextureScale& scale
     warn({Consequence::kLooksDifferent,
           {mesh.file.string()},
           "mesh",
-          "has several materials, which are not used; the visual's material is"});
+          "has several materials, which are not used; the visual's material is",
+          true});
   }
   raster::Mesh out = collector.take();
   if (out.triangles.empty() && !mesh.submesh.empty()) {

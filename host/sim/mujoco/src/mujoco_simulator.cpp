@@ -95,6 +95,7 @@ class MujocoSimulator final : public Simulator {
     return {now_, dynamics_.body_state(uav)};
   }
 
+  bool moves_by_forces() const override { return true; }
   bool reports_contacts() const override { return true; }
   std::vector<Contact> take_contacts() override { return dynamics_.contacts().take(); }
   std::optional<Clearance> clearance(std::size_t uav) const override {
@@ -112,9 +113,9 @@ class MujocoSimulator final : public Simulator {
     check_uav(uav);
     return dynamics_.battery(uav);
   }
-  void computed(std::size_t uav, Duration busy) override {
+  void computing(std::size_t uav, double cores) override {
     check_uav(uav);
-    dynamics_.computed(uav, busy);
+    dynamics_.computing(uav, cores);
   }
 
   std::string description() const override {

@@ -66,7 +66,7 @@ raster::Texture read_jpeg(const std::filesystem::path& file, const std::string& 
   require(tjDecompress2(reader.get(), data, size, texture.rgba.data(), width, 0, height, TJPF_RGBA,
                         TJFLAG_ACCURATEDCT | TJFLAG_LIMITSCANS));
   if (!damage.empty()) {
-    warn({Consequence::kLooksDifferent, {file.string()}, "texture", "is damaged: " + damage});
+    warn({Consequence::kLooksDifferent, {file.string()}, "texture", "is damaged: " + damage, true});
   }
   return texture;
 }

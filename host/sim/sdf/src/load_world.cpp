@@ -85,15 +85,20 @@ double read_gravity(const SdfSource& source, const sdf::World& world) {
   return -gravity.Z();
 }
 
-Duration read_step(const SdfSource& source, const sdf::World& world) {
-  const sdf::Physics* physics = world.PhysicsDefault();
-  if (physics == nullptr) return World{}.step;
-  const Duration step = duration_from_seconds(physics->MaxStepSize());
-  if (step < std::chrono::microseconds(10) || step > std::chrono::milliseconds(20)) {
-    refuse(source, physics->Element()->FindElement("max_step_size"),
-           "must be between 0.00001 and 0.02 seconds");
+/// Of several <physics>, the one that SDF takes: the default one, else the first.
+void read_step(const SdfSource& source, const sdf::World& sdf_world, World& world) {
+  const sdf::Physics* physics = sdf_world.PhysicsDefault();
+  if (physics == nullptr || !physics->Element()) return;
+  const sdf::ElementPtr element = physics->Element()->FindElement("max_step_size");
+  if (!element || !element->GetExplicitlySetInFile()) return;
+  world.step = duration_from_seconds(physics->MaxStepSize());
+  world.step_from = "world";
+  world.step_at = source.where(element);
+  if (world.step < kLeastStep || world.step > kMostStep) {
+    refuse(source, element,
+           "is " + element->GetValue()->GetAsString() +
+               "; it must be between 0.00001 and 0.1 seconds");
   }
-  return step;
 }
 
 void read_scene(const sdf::Scene* scene, World& world) {
@@ -116,7 +121,7 @@ World read_world(const SdfSource& source, const WarningSink& warn) {
   World world;
   world.name = sdf_world.Name();
   world.gravity_m_s2 = read_gravity(source, sdf_world);
-  world.step = read_step(source, sdf_world);
+  read_step(source, sdf_world, world);
   for (std::uint64_t i = 0; i < sdf_world.ModelCount(); ++i) {
     add_model(source, *sdf_world.ModelByIndex(i), {}, "", false, warn, world);
     warn_of_lost_motion(source, *sdf_world.ModelByIndex(i), false, warn);

@@ -82,7 +82,7 @@ TEST(BadWorlds, ValuesAreRefused) {
       {world_sdf("<physics name='p' type='ode'>\n<max_step_size>0</max_step_size></physics>"), 4,
        "<max_step_size> of physics 'p'", "0"},
       {world_sdf("<physics name='p' type='ode'>\n<max_step_size>1</max_step_size></physics>"), 4,
-       "<max_step_size> of physics 'p'", "0.02"},
+       "<max_step_size> of physics 'p'", "0.1 seconds"},
       {world_sdf("<light name='s' type='directional'><direction>0 0 0</direction></light>"), 3,
        "light 's'", "<direction>"},
       {world_sdf(

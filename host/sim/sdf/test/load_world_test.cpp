@@ -58,6 +58,7 @@ TEST(LoadWorld, ReadsPhysicsSceneAndLights) {
   EXPECT_THAT(loaded.warnings, IsEmpty());
   const World& world = loaded.world;
   EXPECT_EQ(world.step, std::chrono::milliseconds(2));
+  EXPECT_EQ(world.step_from, "world");
   EXPECT_DOUBLE_EQ(world.gravity_m_s2, 1.62);
   EXPECT_EQ(world.ambient_rgb, (Vec3{0.25, 0.25, 0.25}));
   EXPECT_EQ(world.background_rgb, (Vec3{0, 0.5, 1}));

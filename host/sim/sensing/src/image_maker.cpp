@@ -92,7 +92,8 @@ void ImageMaker::warn_of_blind_pixels(const CameraModel& camera, const Sensor& s
          "camera '" + sensor.name + "'",
          "has " + std::to_string(blind) +
              " black pixels, because its distortion maps no direction to them; use "
-             "coefficients that are valid for its whole field of view"});
+             "coefficients that are valid for its whole field of view",
+         true});
 }
 
 CameraRenderer& ImageMaker::renderer() {

@@ -146,9 +146,9 @@ std::optional<energy::Status> FakeSimulator::battery(std::size_t uav) const {
   return bodies_[uav].meter->status();
 }
 
-void FakeSimulator::computed(std::size_t uav, Duration busy) {
+void FakeSimulator::computing(std::size_t uav, double cores) {
   check_uav(uav);
-  bodies_[uav].meter->computed(busy);
+  bodies_[uav].meter->computing(cores);
 }
 
 void FakeSimulator::apply(std::size_t uav, const uav::VelocityCommand& command) {

@@ -2,6 +2,7 @@
 
 #include "clocks/descendants.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <thread>
@@ -30,10 +31,6 @@ constexpr const char* kProcessReason =
     "the program started a process, whose work is not counted. With the clock \"counted\", start "
     "processes before the program connects, and let them end; or use another clock";
 
-std::uint64_t branches(const CountPage& page) {
-  return page.counts[static_cast<std::size_t>(WorkClass::kBranch)].load();
-}
-
 class CountedSource final : public TimeSource {
  public:
   explicit CountedSource(os::MappedCounts page) : page_(std::move(page)) {
@@ -45,7 +42,7 @@ class CountedSource final : public TimeSource {
 
   link::ClockKind kind() const override { return link::ClockKind::kCounted; }
 
-  Duration elapsed() const override { return before_ + since_resume(total_units()); }
+  Duration elapsed() const override { return before_ + since_resume(page_->units.load()); }
 
   void hold() const override { page_->held.store(1); }
 
@@ -53,15 +50,15 @@ class CountedSource final : public TimeSource {
   // not depend on what was counted before.
   Duration elapsed_at_resume() const override {
     page_->held.store(0);
-    const std::uint64_t total = total_units();
+    const std::uint64_t total = page_->units.load();
     before_ += since_resume(total);
     resumed_at_units_ = total;
-    resumed_at_work_ = work();
     return before_;
   }
 
   Status complete() const override {
-    if (work() == resumed_at_work_)
+    // No program can do without work between two readings, not even this library.
+    if (page_->units.load() == resumed_at_units_)
       return unusable("its page of counts does not advance while the program computes");
     switch (static_cast<CountFault>(page_->fault.load())) {
       case CountFault::kNone:
@@ -75,16 +72,6 @@ class CountedSource final : public TimeSource {
   }
 
  private:
-  std::uint64_t total_units() const {
-    std::uint64_t total = 0;
-    for (std::size_t kind = 0; kind < kWorkClasses; ++kind)
-      total += page_->counts[kind].load(std::memory_order_relaxed) * page_->cost_units[kind];
-    return total;
-  }
-
-  // No program can do without branches between two readings, not even this library.
-  std::uint64_t work() const { return branches(*page_); }
-
   Duration since_resume(std::uint64_t total_units) const {
     return Duration(static_cast<std::int64_t>((total_units - resumed_at_units_) /
                                               static_cast<std::uint64_t>(kCostUnitsPerNs)));
@@ -92,16 +79,17 @@ class CountedSource final : public TimeSource {
 
   os::MappedCounts page_;
   mutable Duration before_{0};
-  mutable std::uint64_t resumed_at_units_ = total_units();
-  mutable std::uint64_t resumed_at_work_ = work();
+  mutable std::uint64_t resumed_at_units_ = page_->units.load();
 };
 
 /// A program that an emulated program started may run without the emulator.
 bool is_counted(const CountPage& page) {
-  const std::uint64_t before = branches(page);
+  const std::uint64_t before = page.units.load();
   volatile int steps = 0;
   while (steps < 1000) steps = steps + 1;
-  return branches(page) - before >= 500;
+  const std::uint64_t least =
+      500 * *std::min_element(page.cost_units.begin(), page.cost_units.end());
+  return page.units.load() - before >= least && least > 0;
 }
 
 bool settles(const CountPage& page) {

@@ -1,6 +1,5 @@
 #include "vehicle/concurrent_vehicle.h"
 
-#include "clocks/wall_timer.h"
 #include "vehicle/cancellation.h"
 
 #include <utility>
@@ -147,6 +146,8 @@ Result<link::Reply> ConcurrentVehicle::ask(Connection& connection, Body body) {
   Computing& own = computing();
   const ExecTime stamp = now();
   if (!free_running_) own.stages.reach(stamp);
+  if (auto* sleep = std::get_if<link::Sleep>(&body); sleep && sleep->is_relative)
+    sleep->until = add_within_bounds(stamp, sleep->until.time_since_epoch());
   const std::string call = name_of_call(body, catalogue());
   const link::Request request{connection.sequence + 1, stamp, Duration(0), std::move(body),
                               own.stages.times(link::stage_between(own.previous_call, call))};
@@ -174,15 +175,25 @@ void ConcurrentVehicle::close() {
   idle_.clear();
 }
 
+// In free running, a reply can show that ST is behind what the page said.
+ExecTime ConcurrentVehicle::now() const {
+  const ExecTime now = clock_.page->now();
+  if (!free_running_) return now;
+  ExecTime latest = latest_.load();
+  while (latest < now && !latest_.compare_exchange_weak(latest, now)) {
+  }
+  return std::max(latest, now);
+}
+
+// In free running, what this side knows of ST is an estimate: the coordinator takes the time. `ask`
+// adds the stamp.
 Status ConcurrentVehicle::sleep_for(Duration duration) {
-  return sleep_until(add_within_bounds(now(), duration));
+  if (!free_running_) return sleep_until(add_within_bounds(now(), duration));
+  return status_of(interact(link::Sleep{add_within_bounds({}, duration), true}));
 }
 
 Status ConcurrentVehicle::sleep_until(ExecTime until) {
-  if (!free_running_) return status_of(interact(make_sleep(until)));
-  if (const Status good = usable(); !good) return good;
-  make_wall_timer()->sleep_until(clock_.page->state().mono_at(until));
-  return ok_status();
+  return status_of(interact(make_sleep(until)));
 }
 
 Status ConcurrentVehicle::annotate(std::string_view topic, std::string_view json) {

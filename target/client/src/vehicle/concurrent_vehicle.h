@@ -3,6 +3,7 @@
 #include "vehicle/interacting_vehicle.h"
 #include "vehicle/stage_log.h"
 
+#include <atomic>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -24,7 +25,7 @@ class ConcurrentVehicle final : public InteractingVehicle {
   /// Connects to the socket at `options.exec_socket`.
   static Result<std::unique_ptr<Vehicle>> make(const ConnectOptions& options);
 
-  ExecTime now() const override { return clock_.page->now(); }
+  ExecTime now() const override;
   bool is_concurrent() const override { return true; }
   Status sleep_for(Duration duration) override;
   Status sleep_until(ExecTime until) override;
@@ -72,6 +73,7 @@ class ConcurrentVehicle final : public InteractingVehicle {
   Caller caller_;
   MappedClockPage clock_;
   bool free_running_;
+  mutable std::atomic<ExecTime> latest_{};  // that `now` has shown in free running
   std::mutex mutex_;
   std::vector<std::unique_ptr<Connection>> idle_;   // guarded by mutex_
   std::map<std::thread::id, Computing> computing_;  // the map is guarded by mutex_

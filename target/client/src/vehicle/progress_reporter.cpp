@@ -4,6 +4,10 @@
 
 #include <utility>
 
+#include <pthread.h>
+
+#include <tether/link/messages.h>
+
 namespace tether::client {
 
 ProgressReporter::ProgressReporter(Duration period, TimeSource& source,
@@ -23,6 +27,7 @@ ProgressReporter::~ProgressReporter() {
 }
 
 void ProgressReporter::run() {
+  static_cast<void>(::pthread_setname_np(::pthread_self(), link::kClientThread));
   source_.exclude_calling_thread();
   std::unique_lock lock(mutex_);
   while (!stop_.wait_for(lock, period_, [this] { return stopping_; }) && report_()) {

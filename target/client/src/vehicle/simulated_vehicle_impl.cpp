@@ -18,12 +18,12 @@ SimulatedVehicle::SimulatedVehicle(std::unique_ptr<link::Channel> channel, link:
       channel_(std::move(channel)),
       source_(std::move(source)),
       wall_(std::move(wall)),
+      free_running_(welcome.free_running),
       stages_(welcome.start),
       given_(std::move(welcome.computing)) {
   if (welcome.free_running) {
-    auto clock = std::make_unique<FreeRunningClock>(*source_, *wall_, welcome.start);
-    free_running_ = clock.get();
-    clock_ = std::move(clock);
+    clock_ = std::make_unique<FreeRunningClock>(*source_, *wall_, welcome.start,
+                                                welcome.real_time_factor);
   } else {
     clock_ = std::make_unique<BarrierClock>(*source_, welcome.start);
   }
@@ -45,9 +45,19 @@ SimulatedVehicle::~SimulatedVehicle() {
 
 // --- interactions -------------------------------------------------------------------------------
 
+// Handlers that run while the clock is stopped would compute in no time, so they wait. The program
+// can still be ended and stopped, and fail.
+SimulatedVehicle::Call::Call(SimulatedVehicle& vehicle) {
+  if (vehicle.free_running_ == nullptr)
+    signals_.emplace(std::initializer_list<int>{SIGINT, SIGTERM, SIGQUIT, SIGHUP, SIGTSTP, SIGTTIN,
+                                                SIGTTOU, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGTRAP,
+                                                SIGSYS, SIGABRT});
+  lock_ = std::unique_lock(vehicle.calls_);
+}
+
 Result<link::Reply> SimulatedVehicle::interact(Body body) {
   if (const Status good = usable(); !good) return good.failure();
-  const std::lock_guard lock(calls_);
+  const Call call(*this);
   return interact_alone(std::move(body));
 }
 
@@ -82,7 +92,7 @@ ExecTime SimulatedVehicle::begin_call(const Body& body) {
     return clock_->begin();
   }
   const ExecTime stamp = clock_->begin();
-  if (free_running_ == nullptr) stages_.reach(stamp);
+  if (!free_running_) stages_.reach(stamp);
   return stamp;
 }
 
@@ -102,8 +112,7 @@ Result<link::Reply> SimulatedVehicle::ask(const link::Request& request) {
   if (!message) return message.failure();
   auto* reply = std::get_if<link::Reply>(&*message);
   if (reply == nullptr) return protocol_failure("it is not a Reply");
-  if (const Status good = check(*reply, request, free_running_ != nullptr); !good)
-    return good.failure();
+  if (const Status good = check(*reply, request, free_running_); !good) return good.failure();
   return std::move(*reply);
 }
 
@@ -133,23 +142,19 @@ void SimulatedVehicle::close() {
 
 Status SimulatedVehicle::sleep_for(Duration duration) {
   if (const Status good = usable(); !good) return good;
-  const std::lock_guard lock(calls_);
+  const Call call(*this);
   if (const Status good = usable(); !good) return good;  // others were first
   return sleep_alone(add_within_bounds(begin_call(link::Sleep{}), duration), true);
 }
 
 Status SimulatedVehicle::sleep_until(ExecTime until) {
   if (const Status good = usable(); !good) return good;
-  const std::lock_guard lock(calls_);
+  const Call call(*this);
   if (const Status good = usable(); !good) return good;  // others were first
   return sleep_alone(until, false);
 }
 
 Status SimulatedVehicle::sleep_alone(ExecTime until, bool is_relative) {
-  if (free_running_ != nullptr) {
-    free_running_->sleep_until(until);
-    return ok_status();
-  }
   link::Sleep sleep = make_sleep(until);
   sleep.is_relative = is_relative;
   return status_of(interact_alone(sleep));
@@ -157,16 +162,16 @@ Status SimulatedVehicle::sleep_alone(ExecTime until, bool is_relative) {
 
 Status SimulatedVehicle::annotate(std::string_view topic, std::string_view json) {
   if (const Status good = usable(); !good) return good;
-  const std::lock_guard lock(calls_);
+  const Call call(*this);
   if (const Status good = usable(); !good) return good;  // others were first
   // Under the barrier the clock is stopped. In free-running mode no time is charged.
-  const ExecTime at = free_running_ == nullptr ? clock_->begin() : clock_->now();
+  const ExecTime at = free_running_ ? clock_->now() : clock_->begin();
   Status sent = ok_status();
   {
     const std::lock_guard sending(sending_);
     sent = channel_->send(link::Annotation{at, std::string(topic), std::string(json)});
   }
-  if (free_running_ == nullptr) clock_->end(at);
+  if (!free_running_) clock_->end(at);
   return sent;
 }
 
@@ -177,9 +182,9 @@ Status SimulatedVehicle::annotate(std::string_view topic, std::string_view json)
 template <class Change>
 Status SimulatedVehicle::change_stage(Change change) {
   if (const Status good = usable(); !good) return good;
-  const std::lock_guard lock(calls_);
+  const Call call(*this);
   if (const Status good = usable(); !good) return good;  // others were first
-  if (free_running_ != nullptr) return change(stages_);
+  if (free_running_) return change(stages_);
   if (source_->computing() > Duration::zero()) {
     stages_.reach(stages_.reached());
     return change(stages_);

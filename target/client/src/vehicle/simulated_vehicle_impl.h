@@ -3,12 +3,14 @@
 #include "clocks/free_running_clock.h"
 #include "clocks/interaction_clock.h"
 #include "clocks/wall_timer.h"
+#include "signals_blocked.h"
 #include "vehicle/interacting_vehicle.h"
 #include "vehicle/progress_reporter.h"
 #include "vehicle/stage_log.h"
 
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,10 +36,20 @@ class SimulatedVehicle final : public InteractingVehicle {
   Status end_stage() override;
 
  private:
+  /// One call, from before its stamp to after the clock goes on. While it lives, the others wait.
+  class Call {
+   public:
+    explicit Call(SimulatedVehicle& vehicle);
+
+   private:
+    std::optional<SignalsBlocked> signals_;
+    std::unique_lock<std::mutex> lock_;
+  };
+
   Result<link::Reply> interact(Body body) override;
   void close() override;
 
-  /// What the calls do while they hold `calls_`.
+  /// What the calls do during their Call.
   /// @{
   Result<link::Reply> interact_alone(Body body);
   /// The SUT stops computing for that call: its timestamp.
@@ -56,9 +68,9 @@ class SimulatedVehicle final : public InteractingVehicle {
   std::unique_ptr<TimeSource> source_;
   std::unique_ptr<WallTimer> wall_;
   std::unique_ptr<InteractionClock> clock_;
-  FreeRunningClock* free_running_ = nullptr;  // clock_, if that is its policy
+  bool free_running_;  // the policy of clock_
 
-  std::mutex calls_;  // taken before sending_; guards what is below sending_
+  std::mutex calls_;  // of a Call; taken before sending_; guards what is below sending_
 
   // A progress message is stamped and sent under this lock, and whatever else is sent takes it
   // after having held the clock: so no progress message follows a request, or is stamped later than

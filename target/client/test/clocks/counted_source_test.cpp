@@ -31,15 +31,13 @@ class CountedSource : public ::testing::Test {
 
 TEST_F(CountedSource, TakesTheSameTimeForTheSameWorkWhateverWasCountedBefore) {
   const auto page_of_plugin = page();
-  auto& counts = page_of_plugin->counts;
   const auto source = source_of(os::map_counts(file_));
   SutClock clock(*source);
   for (std::uint64_t i = 0; i < 1000; ++i) {
     clock.hold();
-    counts[i % kWorkClasses] += KeyedRandom({.seed = 1, .stream = 2, .index = i}).bits();
+    page_of_plugin->units += KeyedRandom({.seed = 1, .stream = 2, .index = i}).bits();
     clock.resume(ExecTime{});
-    counts[0] += 7;
-    counts[1] += 4;
+    page_of_plugin->units += 11 * 75'003;
     ASSERT_EQ(clock.now(), from_ns<ExecTime>(11 * 75'003 / 100'000)) << i;
   }
 }
@@ -50,7 +48,7 @@ TEST_F(CountedSource, DoesNotCountWhileTheProgramIsHeld) {
   SutClock clock(*source);
   clock.hold();
   EXPECT_EQ(page_of_plugin->held.load(), 1u);
-  page_of_plugin->counts[0] += 1'000'000;
+  page_of_plugin->units += 1'000'000;
   clock.resume(from_ns<ExecTime>(5));
   EXPECT_EQ(page_of_plugin->held.load(), 0u);
   EXPECT_EQ(clock.now(), from_ns<ExecTime>(5));
@@ -61,7 +59,7 @@ TEST_F(CountedSource, IsNotCompleteIfCountsStandStillOrThreadsComputeOrAProcessW
   const auto source = source_of(os::map_counts(file_));
   EXPECT_EQ(page_of_plugin->watched.load(), 1u);
   EXPECT_EQ(source->complete().failure().kind, Failure::Kind::kInvalid) << "counts stand still";
-  page_of_plugin->counts[static_cast<std::size_t>(WorkClass::kBranch)] += 1;
+  page_of_plugin->units += 1;
   EXPECT_TRUE(source->complete());
   for (const CountFault fault : {CountFault::kThreads, CountFault::kProcess}) {
     page_of_plugin->fault.store(static_cast<std::uint32_t>(fault));

@@ -21,17 +21,34 @@ class FreeRunning : public testing::Test {
   }
   FakeWallTimer wall_;
   ManualTimeSource source_{link::ClockKind::kCpu, 4.0};
-  FreeRunningClock clock_{source_, wall_, from_ns<ExecTime>(100)};
+  FreeRunningClock clock_{source_, wall_, from_ns<ExecTime>(100), 1.0};
 };
 
-TEST_F(FreeRunning, ShowsTheWallTimeSinceTheStart) {
-  EXPECT_EQ(to_ns(clock_.now()), 100);
-  wall_.advance(5ms);
-  EXPECT_EQ(clock_.now(), from_ns<ExecTime>(100) + 5ms);
+TEST_F(FreeRunning, FollowsSimulatedTimeAtTheRealTimeFactorFromTheLastReplyOn) {
+  FreeRunningClock clock(source_, wall_, from_ns<ExecTime>(100), 0.3);
+  EXPECT_EQ(to_ns(clock.now()), 100);
+  wall_.advance(10ms);
+  EXPECT_EQ(clock.now(), from_ns<ExecTime>(100) + 3ms);
+  const ExecTime stamp = clock.begin();
+  wall_.advance(10ms);  // waiting for a reply is not held
+  EXPECT_EQ(clock.now(), from_ns<ExecTime>(100) + 6ms);
+  EXPECT_EQ(clock.begin(), stamp) << "of the same call";
+  clock.end(ExecTime(7ms));
+  EXPECT_EQ(clock.now(), ExecTime(7ms));
+  wall_.advance(10ms);
+  EXPECT_EQ(clock.now(), ExecTime(10ms));
+}
+
+TEST_F(FreeRunning, StandsStillWhileSimulatedTimeIsBehindIt) {
+  wall_.advance(10ms);
+  const ExecTime shown = clock_.now();
   clock_.begin();
-  wall_.advance(3ms);  // waiting for a reply is not held
-  clock_.end(from_ns<ExecTime>(0));
-  EXPECT_EQ(clock_.now(), from_ns<ExecTime>(100) + 8ms);
+  clock_.end(ExecTime(4ms));
+  EXPECT_EQ(clock_.now(), shown);
+  wall_.advance(6ms);
+  EXPECT_EQ(clock_.now(), shown);
+  wall_.advance(2ms);
+  EXPECT_EQ(clock_.now(), ExecTime(12ms));
 }
 
 TEST_F(FreeRunning, StallsOnceForWhatTheSlowerTargetNeedsLonger) {
@@ -40,7 +57,7 @@ TEST_F(FreeRunning, StallsOnceForWhatTheSlowerTargetNeedsLonger) {
   EXPECT_EQ(wall_.slept(), 30ms);
   compute(10ms);  // the library, which does not count
   clock_.begin();
-  clock_.end(ExecTime{});
+  clock_.end(clock_.now());
   clock_.begin();
   EXPECT_EQ(wall_.slept(), 30ms);
 }
@@ -51,19 +68,11 @@ TEST_F(FreeRunning, WaitingForACoreOfThisMachineIsPartOfTheStall) {
   EXPECT_EQ(clock_.now(), from_ns<ExecTime>(100) + 40ms);
   EXPECT_EQ(clock_.begin(), from_ns<ExecTime>(100) + 40ms);
   EXPECT_EQ(wall_.slept(), 5ms);
-  clock_.end(ExecTime{});
+  clock_.end(clock_.now());
   compute(10ms);
   wall_.advance(40ms);  // longer than the target computes
   EXPECT_EQ(clock_.begin(), from_ns<ExecTime>(100) + 90ms);
   EXPECT_EQ(wall_.slept(), 5ms);
-}
-
-TEST_F(FreeRunning, SleepsOnTheWallClockAfterStalling) {
-  compute(1ms);
-  clock_.sleep_until(from_ns<ExecTime>(100) + 20ms);
-  EXPECT_EQ(clock_.now(), from_ns<ExecTime>(100) + 20ms);
-  clock_.sleep_until(from_ns<ExecTime>(0));
-  EXPECT_EQ(clock_.now(), from_ns<ExecTime>(100) + 20ms);
 }
 
 TEST_F(FreeRunning, EtIncludesThePendingStall) {
@@ -75,7 +84,7 @@ TEST_F(FreeRunning, EtIncludesThePendingStall) {
   EXPECT_EQ(clock_.begin(), from_ns<ExecTime>(100) + 44ms);
   compute(1ms);  // the library at work
   EXPECT_EQ(clock_.now(), from_ns<ExecTime>(100) + 45ms);
-  clock_.end(ExecTime{});
+  clock_.end(clock_.now());
   EXPECT_EQ(clock_.now(), from_ns<ExecTime>(100) + 45ms);
   compute(2ms);
   EXPECT_EQ(clock_.now(), from_ns<ExecTime>(100) + 53ms);
@@ -97,7 +106,7 @@ TEST_F(FreeRunning, ShowsTheSameTimeBeforeDuringAndAfterAStall) {
 
 TEST_F(FreeRunning, DoesNotStallWithoutAFactor) {
   ManualTimeSource source(link::ClockKind::kWall);
-  FreeRunningClock clock(source, wall_, ExecTime{});
+  FreeRunningClock clock(source, wall_, ExecTime{}, 1.0);
   source.advance(5ms);
   wall_.advance(5ms);
   EXPECT_EQ(clock.now(), ExecTime(5ms));
@@ -116,12 +125,7 @@ TEST_F(FreeRunning, SendsHeartbeatsExceptWhileAReplyIsPending) {
   clock_.begin();
   EXPECT_EQ(sleeps, 1);  // the stall
   EXPECT_FALSE(clock_.while_computing().has_value());
-  clock_.end(ExecTime{});
-  EXPECT_TRUE(clock_.while_computing().has_value());
-
-  compute(1ms);
-  clock_.sleep_until(clock_.now() + 20ms);
-  EXPECT_EQ(sleeps, 3);  // a stall and a sleep
+  clock_.end(clock_.now());
   EXPECT_EQ(clock_.while_computing(), clock_.now());
 }
 

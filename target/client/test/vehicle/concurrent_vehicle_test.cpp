@@ -90,13 +90,28 @@ TEST(ConcurrentVehicle, ForkedChildMustConnectForItself) {
   EXPECT_TRUE(vehicle->command_velocity({}).ok());
 }
 
-TEST(ConcurrentVehicle, SleepsLocallyInFreeRunningAndRefusesCallsAfterFinish) {
-  FakeExec exec(grant, true);
+TEST(ConcurrentVehicle, SleepsAtTheCoordinatorInFreeRunningAndRefusesCallsAfterFinish) {
+  std::mutex mutex;
+  std::vector<link::Request> asked;
+  FakeExec exec(
+      [&](const link::Request& request) {
+        const std::lock_guard lock(mutex);
+        asked.push_back(request);
+        return grant(request);
+      },
+      true);
   const auto vehicle = exec.connect();
-  const ExecTime before = vehicle->now();
   EXPECT_TRUE(vehicle->sleep_for(2ms).ok());
-  EXPECT_GE(vehicle->now(), before + 2ms);
-  EXPECT_EQ(exec.requests(), 0u);
+  EXPECT_TRUE(vehicle->sleep_until(ExecTime(5s)).ok());
+  {
+    const std::lock_guard lock(mutex);
+    const auto& relative = std::get<link::Sleep>(asked.at(0).body);
+    EXPECT_TRUE(relative.is_relative);
+    EXPECT_EQ(relative.until, asked[0].issued_at + 2ms);
+    const auto& absolute = std::get<link::Sleep>(asked.at(1).body);
+    EXPECT_FALSE(absolute.is_relative);
+    EXPECT_EQ(absolute.until, ExecTime(5s));
+  }
   EXPECT_TRUE(vehicle->finish(true, "done", "").ok());
   EXPECT_EQ(vehicle->read_imu("imu").failure().kind, Failure::Kind::kInvalid);
 }

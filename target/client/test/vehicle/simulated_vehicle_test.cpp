@@ -3,11 +3,13 @@
 #include "vehicle/simulated_vehicle_impl.h"
 
 #include <chrono>
+#include <csignal>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <pthread.h>
 
 #include <tether/base/random.h>
 #include <tether/client_testing/manual_time_source.h>
@@ -118,6 +120,27 @@ TEST_F(SimulatedVehicleTest, StampsGrowOnlyByComputing) {
     expected += computed + Duration(KeyedRandom({5, 1, i}).bits() % 40'000'000);
     ASSERT_EQ(vehicle_->now(), expected);
   }
+}
+
+namespace {
+ManualTimeSource* g_source = nullptr;
+}
+
+// A handler that runs while the clock is stopped would compute in no time.
+TEST_F(SimulatedVehicleTest, ChargesHandlersOfSignalsThatArriveDuringACall) {
+  g_source = &source_;
+  struct sigaction action {};
+  action.sa_handler = [](int) { g_source->advance(5ms); };
+  struct sigaction before {};
+  ::sigaction(SIGUSR1, &action, &before);
+  const pthread_t caller = ::pthread_self();
+  start([caller](const Request& r) {
+    ::pthread_kill(caller, SIGUSR1);
+    return one(Reply{r.sequence, r.issued_at + Duration(2ms), {}});
+  });
+  ASSERT_TRUE(vehicle_->command_velocity({}).ok());
+  EXPECT_EQ(vehicle_->now(), ExecTime{} + Duration(7ms));
+  ::sigaction(SIGUSR1, &before, nullptr);
 }
 
 TEST_F(SimulatedVehicleTest, SleepsAreInteractions) {
@@ -231,7 +254,8 @@ TEST_F(SimulatedVehicleTest, DoesNotHoldEtInFreeRunning) {
   start(
       [this](const Request& r) {
         wall_->advance(5ms);
-        return one(Reply{r.sequence, from_ns<ExecTime>(0), {}});
+        const bool sleeps = std::holds_alternative<link::Sleep>(r.body);
+        return one(Reply{r.sequence, sleeps ? ExecTime(90ms) : r.issued_at + 5ms, {}});
       },
       true);
   wall_->advance(10ms);
@@ -240,10 +264,14 @@ TEST_F(SimulatedVehicleTest, DoesNotHoldEtInFreeRunning) {
   EXPECT_EQ(coordinator_->requests().at(0).issued_at, ExecTime(40ms));
   EXPECT_EQ(vehicle_->now(), ExecTime(45ms));
   ASSERT_TRUE(vehicle_->sleep_for(20ms).ok());
+  const Request slept = coordinator_->requests().at(1);
+  EXPECT_EQ(std::get<link::Sleep>(slept.body).until, slept.issued_at + 20ms);
+  EXPECT_TRUE(std::get<link::Sleep>(slept.body).is_relative);
   ASSERT_TRUE(vehicle_->annotate("task", "{}").ok());
-  EXPECT_EQ(vehicle_->now(), ExecTime(65ms));
-  EXPECT_EQ(wall_->slept(), 50ms);
-  EXPECT_EQ(coordinator_->requests().size(), 1u);
+  EXPECT_EQ(vehicle_->now(), ExecTime(90ms)) << "ST at the reply";
+  ASSERT_TRUE(vehicle_->sleep_until(ExecTime(95ms)).ok());
+  EXPECT_FALSE(std::get<link::Sleep>(coordinator_->requests().at(2).body).is_relative);
+  EXPECT_EQ(wall_->slept(), 30ms) << "the stall";
 }
 
 class IncompleteSource final : public TimeSource {

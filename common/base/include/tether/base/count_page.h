@@ -38,31 +38,35 @@ inline constexpr std::int64_t kCostUnitsPerNs = 100'000;
 /// Why what a program computes cannot be counted.
 enum class CountFault : std::uint32_t {
   kNone = 0,
-  kThreads = 1,  ///< two of its threads computed at the same time
+  kThreads = 1,  ///< two of its threads could compute at the same time
   kProcess = 2,  ///< it started a process, whose work is not counted
 };
 
 struct CountPage {
   static constexpr std::uint64_t kMagic = 0x544E434852544554;  // "TETHRCNT"
-  static constexpr std::uint32_t kVersion = 1;
+  static constexpr std::uint32_t kVersion = 2;
 
   // By the host, before the program starts.
   std::uint64_t magic = kMagic;
   std::uint32_t version = kVersion;
   std::uint32_t classes = kWorkClasses;
-  std::array<std::uint64_t, kWorkClasses> cost_units{};  ///< of each unit of work
+  /// Of each piece of work. All 0: the work is counted in `counts`, else in `units`.
+  std::array<std::uint64_t, kWorkClasses> cost_units{};
 
   // By the plugin.
   std::atomic<std::uint32_t> plugin_version{0};  ///< kVersion once it counts
   std::atomic<std::uint32_t> fault{0};           ///< a CountFault, while `watched`
-  std::atomic<std::uint32_t> computing{0};       ///< threads that are in no system call
+  std::atomic<std::uint32_t> computing{0};       ///< threads that compute, or that could
   // By the client library.
   std::atomic<std::uint32_t> watched{0};  ///< 1: in flight, so that the plugin sets `fault`
   std::atomic<std::uint32_t> held{0};     ///< 1: the program waits for a reply
   std::uint32_t unused = 0;
 
-  // By the plugin, in a cache line of their own.
-  alignas(64) std::array<std::atomic<std::uint64_t>, kWorkClasses> counts{};
+  // By the plugin, in cache lines of their own.
+  alignas(64) std::atomic<std::uint64_t> units{0};  ///< what the work has cost
+  std::array<std::atomic<std::uint64_t>, kWorkClasses> counts{};
+
+  bool has_costs() const { return cost_units != decltype(cost_units){}; }
 };
 static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
 static_assert(sizeof(CountPage) <= 4096);

@@ -32,4 +32,8 @@ std::string wrapped(const std::string& text, std::size_t columns);
 /// The number with `digits` digits after the point, in any locale.
 std::string fixed(double value, int digits);
 
+/// The number with `digits` significant digits, or with as many more as it needs to differ from
+/// another number, such as its limit.
+std::string distinct_text(double value, double other, int digits);
+
 }  // namespace tether

@@ -24,6 +24,11 @@ inline constexpr std::array kConsequences = {
     Consequence::kBehavesDifferent, Consequence::kNoEffect};
 /// "doubtful_start", "missing", "looks_different", "behaves_differently", "no_effect".
 std::string_view name(Consequence consequence);
+/// Whether something with this consequence can usually change what a flight is found to do. Looks
+/// usually cannot: lights and shadows that differ a little.
+constexpr bool usually_changes_verdict(Consequence consequence) {
+  return consequence != Consequence::kLooksDifferent && consequence != Consequence::kNoEffect;
+}
 
 /// Something that a file asks for and a simulation does not do, or does with a doubtful result.
 struct Warning {
@@ -31,6 +36,9 @@ struct Warning {
   FileLocation where;   ///< its file is empty if there is none
   std::string subject;  ///< "visual 'v'", "<script> of visual 'v'"
   std::string message;  ///< what is wrong with the subject, and what to do; follows it
+  /// Whether a flight with it could be found to do something else than one without: the answer
+  /// about a flight has to name it.
+  bool can_change_verdict = usually_changes_verdict(consequence);
 
   friend bool operator==(const Warning&, const Warning&) = default;
 };

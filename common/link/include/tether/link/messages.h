@@ -21,6 +21,9 @@ namespace tether::link {
 
 inline constexpr std::uint32_t kProtocolVersion = 2;
 
+/// The name of the client library's own thread, whose time is not the SUT's.
+inline constexpr const char* kClientThread = "tether-client";
+
 /// How the SUT's execution time is measured (DESIGN section 2).
 enum class ClockKind : std::uint8_t {
   kWall = 0,
@@ -58,7 +61,8 @@ struct Hello {
   bool concurrent = false;
   /// Of a scripted clock: the ET of each phase of computing. 0: another clock, or not known.
   Duration computing{0};
-  std::string build_id{};  ///< of the program, in hexadecimal digits; empty: it has none
+  std::string build_id{};     ///< of the program, in hexadecimal digits; empty: it has none
+  std::uint32_t process = 0;  ///< as the SUT's machine numbers it; 0: not known
   /// The program's arguments, the files that they name, and its libraries. Empty: not known.
   std::vector<BuildPart> build{};
 };
@@ -74,6 +78,7 @@ struct StageTime {
 /// its sensor, or is "command", "sleep" or "finish"; before the first one is "start".
 std::string stage_between(std::string_view previous_call, std::string_view call);
 
+inline constexpr double kMaxRealTimeFactor = 1e4;
 /// Coordinator → SUT: accepted.
 struct Welcome {
   uav::Catalogue catalogue;
@@ -82,6 +87,7 @@ struct Welcome {
   /// With the clock "replayed": what each stage takes until the first call.
   std::vector<StageTime> computing{};
   std::vector<std::string> peers{};  ///< the other UAVs, to which messages can be sent
+  double real_time_factor = 1.0;     ///< in free running: ST per WT at most
 };
 
 /// Coordinator → SUT: not accepted, or the run is over. SUT → coordinator: its execution time is
@@ -103,7 +109,7 @@ struct ReadSensor {
 struct SetVelocity {
   uav::VelocityCommand command;
 };
-/// Wait until ET `until` (in free running the client sleeps itself and does not send this).
+/// Wait until ET `until`; in free running, until that ST.
 struct Sleep {
   ExecTime until;
   /// The sleep ends as long after the request as `until` is after the request's stamp: on a board

@@ -14,6 +14,10 @@ struct Unit {
   std::string_view name;  ///< "deg/s"
   Dimension dimension;
   double si = 1.0;  ///< the value of one such unit in SI units
+
+  // Of decimal parts of a unit the nearest number: 9 ms are 0.009 s, as 9,000,000 ns are.
+  double to_si(double value) const { return si < 1.0 ? value / (1.0 / si) : value * si; }
+  double from_si(double value) const { return si < 1.0 ? value * (1.0 / si) : value / si; }
 };
 std::span<const Unit> units();
 

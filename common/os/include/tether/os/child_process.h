@@ -29,6 +29,7 @@ struct ChildCommand {
   int end_signal = SIGTERM;                  ///< asks it to end
   int death_signal = SIGKILL;                ///< sent to it when this process ends
   Duration grace = std::chrono::seconds(1);  ///< from `end_signal` to SIGKILL
+  bool adopts_orphans = false;  ///< it is the parent of its descendants whose own parent ends
   /// If set, the child is a copy of this process that calls this and exits with what it returns,
   /// rather than a program. It has the memory and the open files of this process, but only the
   /// thread that starts it: a process with other threads than that of an Interrupt must not start
@@ -36,6 +37,9 @@ struct ChildCommand {
   /// `working_folder` stay those of this process.
   std::function<int()> body{};
 };
+
+/// The variables of a child with `extra`, by name: those of this process, and these.
+Environment merged_environment(const Environment& extra);
 
 /// Higher exit codes are this plus the signal that ended a program, as in shells.
 inline constexpr int kSignalled = 128;

@@ -33,6 +33,12 @@ std::filesystem::path find_emulator(const Emulator& emulator);
 /// program.
 void require_emulated(const Emulator& emulator, const std::filesystem::path& program);
 
+/// Adds variables to the command of an emulated program, so that its stack begins at the same
+/// address whatever its variables and arguments are: what functions of the C library do depends on
+/// where in a page their operands are. They fill a whole number of blocks, almost always one.
+/// @pre the command's first two arguments are the emulator and the program
+void pad_start(ChildCommand& command);
+
 struct UnmapCounts {
   void operator()(CountPage* page) const;
 };

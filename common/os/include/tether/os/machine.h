@@ -1,8 +1,12 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
+
+#include <tether/base/time.h>
 
 namespace tether::os {
 
@@ -19,6 +23,19 @@ int separate_cores();
 
 /// The CPUs that this process may run on, ascending.
 std::vector<int> allowed_cpus();
+
+/// Time of all CPUs since the start of the machine, added up.
+struct ProcessorTime {
+  Duration used{0};    ///< by programs and the kernel
+  Duration stolen{0};  ///< wanted, but given to other virtual machines
+  Duration idle{0};
+
+  friend bool operator==(const ProcessorTime&, const ProcessorTime&) = default;
+};
+/// None: the kernel does not tell.
+std::optional<ProcessorTime> processor_time();
+/// The same from the first line of /proc/stat, whose unit is `tick`.
+std::optional<ProcessorTime> parse_processor_time(std::string_view line, Duration tick);
 
 /// Raises the number of descriptors that this process, and those that it starts, may have open to
 /// `count`, if fewer are allowed. How many are allowed then: fewer if the system allows no more.

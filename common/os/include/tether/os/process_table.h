@@ -1,7 +1,9 @@
 #pragma once
 
 #include <csignal>  // pid_t
+#include <cstdint>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include <tether/base/time.h>
@@ -13,6 +15,7 @@ struct ProcessStat {
   char state = '?';  ///< 'R', 'S', 'T' …; 'Z': has ended, 'X': has ended and was waited for
   pid_t parent = 0;
   pid_t group = 0;
+  Duration used{0};  ///< CPU time of its own threads, in ticks as the next
   /// CPU time of the children for which it has waited, and of those for which they had; rounded
   /// down to the kernel's ticks (10 ms), user and system time each.
   Duration waited_children{0};
@@ -30,6 +33,23 @@ std::vector<pid_t> all_processes();
 /// Children that appear or end meanwhile may be missing. Reads the whole process table on a kernel
 /// that does not list them (CONFIG_PROC_CHILDREN).
 std::vector<pid_t> children_of(pid_t process);
+
+/// How many threads of a process and of its descendants do what, at one instant.
+struct ThreadStates {
+  int runnable = 0;  ///< run, or wait for a core
+  int waiting = 0;   ///< on something that can take any time: a timer, a lock, a socket
+  int halted = 0;    ///< by a signal or a debugger, or until the disk or the memory has answered
+};
+/// Threads named `left_out` are not counted; nor are processes that have ended.
+ThreadStates thread_states(pid_t process, std::string_view left_out = {});
+
+/// Whether `process` has a TCP connection between these ports, as its end sees them. False if this
+/// process may not look.
+bool has_connection(pid_t process, std::uint16_t local_port, std::uint16_t remote_port);
+
+/// CPU time of this process and of all its descendants, living and ended. Short of that of some
+/// descendants by a tick (10 ms).
+Duration used_with_descendants();
 
 /// From now on, descendants of this process whose own parent ends become its children, however
 /// they left their group or session (PR_SET_CHILD_SUBREAPER).

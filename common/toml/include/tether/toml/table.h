@@ -80,6 +80,7 @@ class Table {
   Table table(std::string_view key) const;
   /// At least one.
   std::vector<Table> tables(std::string_view key, Keys allowed) const;
+  std::vector<Table> tables(std::string_view key, std::span<const std::string_view> allowed) const;
   std::vector<Table> tables(std::string_view key) const;
 
   // Keys that may be missing.
@@ -96,6 +97,7 @@ class Table {
   /// A string, number or boolean as on a command line.
   std::string scalar_as_text(std::string_view key) const;
   bool is_table(std::string_view key) const;
+  bool is_text(std::string_view key) const;
 
   FileLocation where() const;
   FileLocation where(std::string_view key) const;
@@ -141,9 +143,11 @@ class Document {
   Table root() const;
 
   /// Replaces the value at a path ("uav.sensors.camera.rate_hz") wherever the file has it: of an
-  /// array of tables, in each one that does. `text`: a number or a boolean as in TOML; anything
-  /// else is a string. Returns how many values were replaced. Invalidates tables.
+  /// array of tables, in each one that does. `text`: a number, a boolean or an array of values as
+  /// in TOML; anything else is a string. Returns how many values were replaced. Invalidates tables.
   std::size_t replace(std::string_view path, const std::string& text);
+  /// The same where the file has no value at the path yet. The tables on the path need not exist.
+  std::size_t add(std::string_view path, const std::string& text);
 
  private:
   struct Delete {

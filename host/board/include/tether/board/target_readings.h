@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -38,6 +39,12 @@ struct RunWarning {
   std::string text;     ///< one line, naming the reading
   bool spoils = false;  ///< the times of the run are not valid
 };
+/// For which share of a run programs waited for a processor of the machine, because others had it
+/// or because the SUT has more threads than there are; or, if that is more, other virtual machines
+/// had one. None: not known.
+std::optional<double> contended_share(const record::Readings& before,
+                                      const record::Readings& after);
+
 /// Compares the readings before and after a run. For the host, checks only whether it was
 /// throttled.
 std::vector<RunWarning> run_warnings(const record::Readings& before, const record::Readings& after,

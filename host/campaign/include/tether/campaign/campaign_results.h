@@ -16,7 +16,7 @@ struct ConditionResults {
   std::vector<TrialResult> trials;  ///< those that have a result, in order of the seeds
   std::size_t planned = 0;          ///< trials in the campaign's plan
 
-  /// The values of a metric over those trials that have one.
+  /// The values of a metric over those distinct flights (copies.h) that have one.
   std::vector<double> values(std::string_view metric) const;
   std::size_t count(Outcome outcome) const;
 };

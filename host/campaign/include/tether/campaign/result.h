@@ -139,6 +139,35 @@ struct UavEnergy {
 };
 double total_J(const energy::Energies_J& spent_J);
 
+/// What a run did not see or could not measure well, so that its verdict may be wrong. The part of
+/// it that follows from the files is Warning::can_change_verdict.
+struct Doubt {
+  enum class Kind {
+    kUnseenWait,       ///< the program waited on something that Tether does not see; amount: s
+    kParallelThreads,  ///< threads computed in parallel, but their times were added; amount: CPU
+                       ///< time over wall time, > 1
+    kBusyMachine,      ///< the machine was busy or uneven; amount: the larger of MachineLoad
+  };
+  Kind kind = Kind::kUnseenWait;
+  std::string subject;  ///< the UAV of the program, or the machine
+  double amount = 0.0;
+
+  friend bool operator==(const Doubt&, const Doubt&) = default;
+};
+/// "unseen_wait", "parallel_threads", "busy_machine".
+std::string_view name(Doubt::Kind kind);
+
+/// How far a machine on which execution time was measured was from idle and even during a run.
+struct MachineLoad {
+  std::string machine;        ///< "host", or the name of a board
+  double block_spread = 0.0;  ///< of a fixed block of work: longest over shortest time, less 1
+  double others = 0.0;  ///< share of its processors' time that other programs and other virtual
+                        ///< machines took; 0 also if the user started programs of the run. Of a
+                        ///< board: share of the run for which programs waited for a processor
+
+  friend bool operator==(const MachineLoad&, const MachineLoad&) = default;
+};
+
 /// Everything that may differ between two runs of the same trial with the same execution times.
 struct ThisRun {
   std::string started_at;  ///< ISO 8601, UTC
@@ -150,6 +179,8 @@ struct ThisRun {
   std::optional<TargetReport> target{};      ///< none if it was not read
   std::vector<TargetReport> more_targets{};  ///< further machines of a mixed fleet
   std::vector<std::string> notes{};          ///< unintended stalls of the run, one line each
+  std::vector<Doubt> doubts{};               ///< in the order of their kinds and subjects
+  std::vector<MachineLoad> loads{};          ///< of machines whose clock was read; also if normal
   std::vector<std::string> sut_files{};  ///< written by SUTs; paths in the trial's folder, sorted
   std::optional<SimulatorFigures> simulator{};  ///< none: not measured
   std::string node{};  ///< the machine whose worker flew it; empty: no worker did
@@ -158,6 +189,14 @@ struct ThisRun {
   std::vector<std::string> size_arguments{};
 
   friend bool operator==(const ThisRun&, const ThisRun&) = default;
+};
+
+/// The step of the simulation.
+struct StepReport {
+  Duration step{0};
+  std::string from;  ///< who set it: "scenario", "world" or, if neither did, "default"
+
+  friend bool operator==(const StepReport&, const StepReport&) = default;
 };
 
 /// The time of the SUTs was replayed: from what, how old, and how.
@@ -178,8 +217,9 @@ struct TrialResult {
   Duration computing{0};  ///< of clock "scripted": charged for each phase of computing
   std::optional<ReplayReport> replay{};  ///< of clock "replayed"
   double real_time_factor = 0.0;
-  std::string target{};             ///< its name; empty: the host as it is
-  record::EmulatorInfo emulator{};  ///< of a counted target
+  std::optional<StepReport> step{};  ///< none: the result is of an earlier version
+  std::string target{};              ///< its name; empty: the host as it is
+  record::EmulatorInfo emulator{};   ///< of a counted target
   /// Values of the scenario's file that were replaced (`tether run --set`, sweeps).
   std::map<std::string, std::string> settings{};
   /// Names of the profiles in use, in the order of their layers: a later one overrides an earlier.
@@ -194,6 +234,8 @@ struct TrialResult {
   std::vector<UavEnergy> energy{};  ///< of each UAV with a model of energy
   std::vector<SutResult> suts;
   SyncFigures sync;
+  /// See copies.h; empty: there is no ground truth, or the result is of an earlier version.
+  std::string flight_digest{};
   /// Of each UAV; empty: the trial did not run, or the result is of an earlier version.
   std::vector<UavContacts> contacts;
   std::optional<AuditVerdict> audit;

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <vector>
 
 /// Statistics of small samples. Pure functions; all values must be finite.
 namespace tether::campaign {
@@ -43,5 +44,18 @@ struct RankTest {
 };
 /// @pre neither is empty.
 RankTest mann_whitney(std::span<const double> a, std::span<const double> b);
+
+/// How many of how many.
+struct Count {
+  std::size_t of_them = 0;
+  std::size_t all = 0;
+};
+/// Fisher's exact test, two-sided: the probability of a split between both samples that is no more
+/// likely than this one, if their shares are equal. 1 if a sample is empty.
+double fisher_exact(const Count& a, const Count& b);
+
+/// P-values corrected for their number by Holm's step-down method, in their order: those below a
+/// level are significant, with at most that probability of any false one.
+std::vector<double> holm(std::span<const double> p_values);
 
 }  // namespace tether::campaign

@@ -100,12 +100,30 @@ struct Ending {
   std::string reason;  ///< one line; names the cause
 };
 
+/// What the threads of a SUT do at one instant.
+struct ThreadStates {
+  int runnable = 0;        ///< run, or wait for a core
+  bool is_halted = false;  ///< one is stopped by a debugger or a signal, or waits for the disk
+};
+
+/// What the threads of a SUT did while it should have computed: each look counts for the WT until
+/// the next one. Waiting that is an interaction is not part of it.
+struct SutLooks {
+  Duration waiting{0};         ///< none was runnable, and none halted
+  Duration computing{0};       ///< some were runnable
+  Duration of_all_threads{0};  ///< the same, added up over them
+
+  /// Adds a look that counts for so long.
+  void add(const ThreadStates& states, Duration represented);
+};
+
 /// The result of one SUT.
 struct SutReport {
   std::string uav;
   std::string sut;                     ///< its name from the Hello, printable; empty: never joined
   std::optional<link::Finish> finish;  ///< its own report; the outcome is printable
   ExecTime et;                         ///< its ET at the end of the run
+  SutLooks looks{};                    ///< under the barrier, if its clock is not `wall`
 };
 
 struct RunReport {
@@ -149,6 +167,11 @@ struct RunHooks {
   /// With clocks "counted": how long the SUT of that UAV has computed so far, in ET, and what the
   /// library in it has. As long as it grows, the SUT is not hung, and may take longer to join.
   std::function<Duration(std::size_t uav)> computed_by;
+  /// A SUT has joined: from where, and its process as it numbers it (0: not known).
+  std::function<void(std::size_t uav, const std::string& address, std::uint32_t process)> on_joined;
+  /// What the threads of that SUT do now; none: not known. Called some hundred times per second of
+  /// WT, while a SUT computes whose ET is not the time that passes.
+  std::function<std::optional<ThreadStates>(std::size_t uav)> threads_of;
   /// Reads the state of the SUTs' machine for the record. Called once after a run that had begun,
   /// when its SUTs have been notified of the end.
   std::function<record::Readings()> read_target;

@@ -57,9 +57,8 @@ class Meter {
   /// `model` and `airframe` must outlive it. At ST 0.
   Meter(const Model& model, const uav::MultirotorParameters& airframe, double gravity_m_s2);
 
-  /// The computer computed for that long, summed over its cores. This is drawn in the steps to
-  /// come, as if one core did it now: a request of a SUT tells only afterwards what it computed.
-  void computed(Duration busy) { pending_ += busy; }
+  /// From now on, so many of the computer's cores are busy.
+  void computing(double cores) { busy_cores_ = cores; }
   /// One step from `from` on, with the state at its beginning.
   void step(SimTime from, Duration dt, const uav::BodyState& body,
             const uav::MultirotorState& rotors);
@@ -72,7 +71,7 @@ class Meter {
   const Model* model_;
   const uav::MultirotorParameters* airframe_;
   double hover_W_;
-  Duration pending_{0};
+  double busy_cores_ = 0.0;
   Status status_;
 };
 

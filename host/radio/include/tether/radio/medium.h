@@ -81,7 +81,8 @@ class Medium {
   using LinkOf = std::function<Link(std::size_t from, std::size_t to)>;
   /// Handles the next event; appends what has arrived or was lost by it. @pre next()
   void handle_next(const LinkOf& link_of, std::vector<Arrival>& out);
-  /// The messages that are still in transit, at each of their receivers, in the order of senders.
+  /// The messages that are still in transit, at each of their receivers, in the order of senders:
+  /// `at` is `now`, or when they were sent or are being transmitted if that is later.
   std::vector<Arrival> in_transit(SimTime now) const;
 
  private:

@@ -67,6 +67,12 @@ struct BatteryReading {
   friend bool operator==(const BatteryReading&, const BatteryReading&) = default;
 };
 
+/// A velocity in the heading frame H, and a yaw rate.
+struct VelocityCommand {
+  double vx_H_m_s = 0, vy_H_m_s = 0, vz_H_m_s = 0, yaw_rate_rad_s = 0;
+  friend bool operator==(const VelocityCommand&, const VelocityCommand&) = default;
+};
+
 /// One request of a SUT and its reply. Topic /interactions; log time = ST at release.
 struct Interaction {
   std::string uav;
@@ -91,7 +97,9 @@ struct Interaction {
   /// true region is the projection of its shape, whatever is in front of it.
   std::optional<std::vector<SeenAnchor>> seen_anchors{};
 
-  std::optional<SimTime> effect_at;     ///< kind "command": first step boundary it acts on
+  std::optional<SimTime> effect_at;  ///< kind "command": first step boundary it acts on
+  /// Kind "command": what the SUT asked for. None in records of Tether 0.1.0.
+  std::optional<VelocityCommand> command{};
   std::optional<ExecTime> sleep_until;  ///< kind "sleep": requested end of the sleep
 
   // For kind "receive".
@@ -142,6 +150,8 @@ struct CommandEffect {
   std::uint64_t sequence = 0;
   SimTime applied_at;
   double vx_H_m_s = 0, vy_H_m_s = 0, vz_H_m_s = 0, yaw_rate_rad_s = 0;
+
+  VelocityCommand command() const { return {vx_H_m_s, vy_H_m_s, vz_H_m_s, yaw_rate_rad_s}; }
 };
 
 /// State of the UAV's body B in the world frame W. Topic /ground_truth/<uav>; log time = `at`. The
@@ -292,6 +302,25 @@ inline std::string describe(const ReplayInfo& from) {
   return "replayed (" + from.mode + ") from " + from.timing + ", recorded " + from.recorded_at +
          " on " + from.board;
 }
+struct ChargeVoltage {
+  double charge = 0.0;  ///< share of the capacity
+  double voltage_V = 0.0;
+
+  friend bool operator==(const ChargeVoltage&, const ChargeVoltage&) = default;
+};
+/// The model of a UAV's energy: its battery, and what draws from it.
+struct EnergyInfo {
+  double capacity_C = 0.0;  ///< [A s]; > 0
+  double resistance_ohm = 0.0;
+  double initial_charge = 1.0;                   ///< share of the capacity
+  std::vector<ChargeVoltage> voltage_at_charge;  ///< open circuit; both rise; linear in between
+  double lift_W = 0.0;                           ///< what hovering takes
+  double idle_W = 0.0;
+  double busy_core_W = 0.0;
+  double sensors_W = 0.0;
+
+  friend bool operator==(const EnergyInfo&, const EnergyInfo&) = default;
+};
 /// One of the things besides the program's own code that decide what it computes, see
 /// link::BuildPart.
 struct BuildPart {
@@ -323,6 +352,11 @@ struct SutInfo {
   /// Name of the scenario's computer on which the SUT runs, shared or not. Empty: the scenario
   /// describes none, or it is a record of Tether 0.1.0.
   std::string computer{};
+  /// Of the UAV's collision shapes: how far they reach from the origin of B. 0: unknown.
+  double extent_m = 0.0;
+  /// The most that the rotors can change its rate of rotation; 0: unknown.
+  double max_angular_acceleration_rad_s2 = 0.0;
+  std::optional<EnergyInfo> energy{};  ///< none: energy is not simulated, or Tether 0.1.0
 };
 /// A computer whose cores several SUTs share. On a virtual one, while n compute, each gets min(1,
 /// cores / n) of a core; a core with pinned programs is shared by these only. On a real one, its
@@ -363,6 +397,23 @@ struct RadioInfo {
   std::string model;             ///< "ideal" or "log_distance"; empty: none
   Duration least_delay{0};       ///< of a message without bytes
   double data_rate_bit_s = 0.0;  ///< 0: a message takes no time for its bytes
+  /// How many messages an inbox holds. 0: this and what follows is unknown (Tether 0.1.0).
+  std::uint64_t inbox_messages = 0;
+
+  // Of "log_distance": radio::Settings.
+  std::string access{};  ///< "csma" or "tdma"
+  std::uint64_t queue_messages = 0;
+  std::uint64_t header_bytes = 0;
+  Duration delay{0};  ///< from the call to the channel
+  Duration preamble{0};
+  Duration slot{0};
+  double bandwidth_hz = 0.0;
+  double tx_power_dbm = 0.0;
+  double noise_figure_db = 0.0;
+  double reference_loss_db = 0.0;
+  double exponent = 0.0;
+  double shadowing_db = 0.0;
+  double wall_loss_db = 0.0;
   friend bool operator==(const RadioInfo&, const RadioInfo&) = default;
 };
 /// Configuration of the run: written first (metadata record "tether"), as names and values.
@@ -378,6 +429,7 @@ struct Header {
   Duration step{0};
   Duration ground_truth_period{0};  ///< between two messages of a UAV; 0: no fixed period
   double real_time_factor = 0.0;    ///< limit on ST per WT; 0: none
+  Duration time_limit{0};           ///< at which the run ends; 0: unknown (Tether 0.1.0)
   std::vector<SutInfo> suts;
   std::vector<SensorInfo> sensors;
   std::vector<Anchor> anchors;
@@ -387,6 +439,10 @@ struct Header {
   EmulatorInfo emulator{};
   bool reports_contacts = false;  ///< the record has all contacts; else it has none, and none is
                                   ///< known
+  /// Nothing but the UAVs can move. False also in records of Tether 0.1.0.
+  bool only_uavs_move = false;
+  /// UAVs move by the forces of their rotors, gravity, drag and contacts alone. False: unknown.
+  bool moves_by_forces = false;
   RadioInfo radio{};
 };
 
@@ -398,6 +454,13 @@ struct Clearance {
   SimTime at;          ///< when that was for the first time
   std::string to;      ///< name of the model or UAV
   friend bool operator==(const Clearance&, const Clearance&) = default;
+};
+
+/// How many messages of a topic the record has.
+struct TopicCount {
+  std::string topic;
+  std::uint64_t messages = 0;
+  friend bool operator==(const TopicCount&, const TopicCount&) = default;
 };
 
 /// End of the run: written last (metadata record "tether.end"). A record without it is incomplete.
@@ -420,6 +483,8 @@ struct Footer {
   /// Of the UAVs whose clearance was measured.
   std::vector<Clearance> clearances{};
   std::vector<std::string> expelled{};  ///< UAVs whose SUTs lost their sessions in the run
+  /// Of each topic with messages, filled in by the recorder. Empty in records of Tether 0.1.0.
+  std::vector<TopicCount> topics{};
 };
 
 }  // namespace tether::record

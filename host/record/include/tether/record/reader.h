@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -42,6 +43,9 @@ struct Record {
   std::vector<Logged<Image>> images;
   std::vector<Logged<RawImage>> raw_images;
   std::optional<Footer> footer;
+  /// Messages that the file has and this does not: images if they were not asked for, poses for 3D
+  /// views, and what others added. By topic.
+  std::map<std::string, std::uint64_t> unloaded;
   std::vector<Miscount> miscounts;  ///< in file order, also of images; at most kMaxMiscounts
   /// Where and why reading stopped early (truncated or damaged file), in one printable line:
   /// "damaged at byte N: …". N is the start of the first damaged record of the container (for

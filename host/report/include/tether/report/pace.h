@@ -82,12 +82,17 @@ struct Pace {
   std::vector<BoardPace> boards{};
 
   Speed speed{};  ///< of all programs of the run
+  bool has_radio = false;
+  std::size_t messages = 0;  ///< of all programs, once for each receiver
+  std::size_t messages_arrived = 0;
 
   /// How many times slower the program could compute, and still 95 % of its images would take no
   /// longer than the camera's period. None without a camera with a rate.
   std::optional<double> headroom() const;
   /// Whether the program reads (nearly) every image that the camera offers.
   bool keeps_up() const;
+  /// Whether it reads fewer images, because computing one takes longer than the camera's period.
+  bool is_too_slow_for_camera() const;
 };
 
 /// Of the SUT whose images cost most. None if the run was not synchronised (its computing

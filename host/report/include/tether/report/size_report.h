@@ -32,7 +32,13 @@ struct SizedCondition {
   std::vector<sizing::Flight> flights{};  ///< one for each trial
   std::vector<campaign::TrialResult> trials{};
   std::vector<CurvePoint> curve{};
+  /// Flights that repeated one at the same slowdown (campaign/copies.h). They are not among these.
+  std::size_t copies = 0;
 };
+/// With so many copies, the seeds change too little for an answer that is surer.
+inline constexpr std::size_t kMostCopies = 20;
+/// Adds the flight, or counts it as a copy. @return whether it is one. @pre the trial did not fail.
+bool add_flight(SizedCondition& to, const campaign::TrialResult& trial, double slowdown);
 
 /// A computer that the user asks about.
 struct Board {
@@ -43,7 +49,7 @@ struct Board {
 };
 enum class BoardVerdict { kSuffices, kUndecided, kDoesNot };
 /// A board suffices if all of its interval is within that of sufficient slowdowns.
-BoardVerdict verdict(const Board& board, const sizing::Answer& answer);
+BoardVerdict verdict(const Board& board, const SizedCondition& sized);
 
 struct SizeReport {
   std::string scenario;
@@ -86,6 +92,10 @@ std::string size_json(const SizeReport& report);
 std::optional<double> margin_of(const campaign::MetricValue& metric);
 /// The same of a clause.
 std::optional<double> margin_of(const judge::ClauseVerdict& clause);
+/// Whether the flights at low slowdowns reach the goal more often than those at high ones, which
+/// chance does not explain.
+bool speed_matters(const SizedCondition& sized);
+
 /// The flight for the statistics. Its margin is that of its worst metric, if that agrees with the
 /// outcome. @pre the trial did not fail.
 sizing::Flight flight_of(const campaign::TrialResult& trial, double slowdown);

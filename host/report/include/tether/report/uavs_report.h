@@ -48,6 +48,8 @@ std::vector<sizing::UavLevel> uav_levels(const std::vector<UavsPoint>& points);
 std::vector<UavsLevel> levels_of(const UavsReport& report);
 PaceOrReason pace_at_limit(const UavsReport& report, const std::filesystem::path& folder);
 std::size_t flights_of(const UavsReport& report);
+/// Of these, copies of other ones with as many UAVs, which do not count.
+std::size_t copies_in(const UavsReport& report);
 
 /// The answer with its evidence, then what limits it.
 std::vector<Answer> uavs_answers(const UavsReport& report);

@@ -25,8 +25,11 @@ inline constexpr double kWantedSuccess = 0.9;
 enum class Ruling {
   kVoid,             ///< a record breaks the rules of time
   kSetUpFailed,      ///< no flight ran
-  kNotFastEnough,    ///< fewer than the wanted share reach the goal; or the only flight missed it
-  kOtherReason,      ///< the same, but the computer's speed is not the reason: see OtherReason
+  kUnseen,           ///< programs waited or computed in ways that Tether does not see
+  kNotFastEnough,    ///< fewer than the wanted share reach the goal, or the only flight missed it;
+                     ///< and speed is shown to be the reason: see MissReason
+  kGoalMissed,       ///< the same, but whether speed is the reason is not known
+  kOtherReason,      ///< the same, but speed is probably not the reason
   kUndecided,        ///< the flights show neither
   kFastEnoughSoFar,  ///< every flight reached the goal, but they are too few to be sure
   kFastEnough,       ///< at least the wanted share reach the goal
@@ -46,15 +49,34 @@ std::string missed_without_value(const campaign::TrialResult& trial);
 /// the counts.
 std::string missed_text(const MissedLimits& missed, bool of_one = false);
 
-/// What shows that a goal is not missed for want of speed.
-struct OtherReason {
+/// Why the goal is missed, as far as the flights of all conditions show it.
+struct MissReason {
   enum class Evidence {
-    kInstant,            ///< computing takes no time under this condition
-    kInstantMissesToo,   ///< … under another one, which misses the goal, too
-    kEquallyFastReaches  ///< another one has the same computers and sensors, and reaches the goal
+    // Speed is the reason.
+    kFasterReaches,  ///< another condition differs in speed only, is faster, and reaches it
+    kMissesOwnPace,  ///< the program is too slow for its camera, and for a limit on its own pace
+    // It is not known.
+    kNothing,          ///< no faster condition was flown, or the speeds are not known
+    kFasterUndecided,  ///< another condition is faster, but too few of its flights reach it
+    // Speed is probably not the reason.
+    kKnownCause,          ///< what happened has nothing to do with computing: see `cause`
+    kInstant,             ///< computing takes no time under this condition
+    kInstantMissesToo,    ///< … under another one, which misses the goal, too
+    kFasterMissesToo,     ///< another one is faster, reads every image, and misses it, too
+    kEquallyFastReaches,  ///< another one has the same computers and sensors, and reaches it
   };
-  Evidence evidence = Evidence::kInstant;
+  Evidence evidence = Evidence::kNothing;
+  std::string cause{};      ///< a limit, or what happened: part of a sentence
   std::string condition{};  ///< the other one
+  std::string other{};      ///< how many of its flights reach the goal: "10 of 10 flights"
+  double other_s = 0.0;     ///< what an image (or the largest stage) costs there; 0: not known
+  double own_s = 0.0;       ///< … and here
+};
+
+/// A doubt of campaign::Doubt in the flights of a condition.
+struct FlightsInDoubt {
+  campaign::Doubt largest{};
+  std::size_t flights = 0;
 };
 
 /// One condition of a scenario.
@@ -64,34 +86,55 @@ struct ConditionVerdict {
   std::size_t planned = 0;
   std::size_t flown = 0;    ///< with a result that is no failure
   std::size_t reached = 0;  ///< of these
-  std::size_t failed = 0;   ///< in the set-up or by a lost part: these say nothing
+  /// The same without copies (campaign/copies.h): the evidence.
+  std::size_t distinct = 0;
+  std::size_t distinct_reached = 0;
+  std::size_t failed = 0;        ///< in the set-up or by a lost part: these say nothing
+  bool was_interrupted = false;  ///< the user stopped a flight
   std::size_t crashed = 0;
   std::size_t throttled = 0;  ///< the board reduced its clock frequency
   std::size_t unsound = 0;    ///< audit not passed, or causality violations
-  /// The exact interval (Clopper and Pearson, 1934) of the share that reaches the goal, 95 %. None
-  /// if nothing has flown.
+  /// The exact interval (Clopper and Pearson, 1934) of the share that reaches the goal, 95 %, from
+  /// the distinct flights. None if nothing has flown.
   std::optional<campaign::Interval> share{};
   MissedLimits missed{};
   /// The metric or clause that came closest to its limit in any flight, and how far it was within
   /// it, in shares of the limit.
   std::optional<std::pair<std::string, double>> closest{};
-  std::string reason{};  ///< of the first flight that failed, or is not sound
+  std::string reason{};                  ///< of the first flight that failed, or is not sound
+  std::vector<FlightsInDoubt> doubts{};  ///< one of each kind, in the order of the kinds
+  /// What of the files is not simulated as written and can change the verdict, one line each.
+  std::vector<std::string> left_out{};
   std::optional<Pace> pace{};
   std::string unreadable{};  ///< why the pace is not known, of the first record; empty: it has none
-  std::optional<OtherReason> other_reason{};  ///< of kOtherReason
+  std::optional<MissReason> miss{};  ///< of the three rulings on a missed goal
   /// As in campaign::ThisRun, of the first flight.
   std::vector<std::string> size_arguments{};
   bool is_on_real_board = false;  ///< as far as the first flight says
+
+  /// All that has flown is one flight: the only one, or one that was flown several times.
+  bool is_one_flight() const { return distinct == 1 && (planned == 1 || flown > 1); }
+  bool is_missed() const {
+    return ruling == Ruling::kNotFastEnough || ruling == Ruling::kGoalMissed ||
+           ruling == Ruling::kOtherReason;
+  }
+  /// None: there is no such doubt.
+  const FlightsInDoubt* doubt(campaign::Doubt::Kind kind) const;
 };
 
 struct Advice {
   enum class Kind {
     kMendSetUp,
+    kFlyAgain,       ///< the user stopped it
     kReadAudit,      ///< subject: the condition
+    kShowWaits,      ///< the program waits unseen
+    kRunConcurrent,  ///< its threads compute in parallel
     kCoolBoard,      ///< subject: the condition
     kSpeedUpStage,   ///< subject: the stage
-    kTryFaster,      ///< it reads every image: is it the computer? subject: the condition
+    kTryFaster,      ///< is it the computer? subject: the condition
     kFindReason,     ///< it is not the computer; subject: the condition to compare, or empty
+    kQuietMachine,   ///< it was busy
+    kVarySeeds,      ///< all flights are one
     kFindThreshold,  ///< subject: the condition
     kFlyMore,        ///< subject: the condition; flights: how many in all, 0: very many
     kSetLimit,
@@ -109,7 +152,11 @@ struct Verdict {
   std::vector<ConditionVerdict> conditions;   ///< in the order of the campaign; not empty
   std::size_t lead = 0;          ///< the most urgent condition, with which the answer begins
   std::vector<Advice> advice{};  ///< what to do next; the most useful first
+
+  const ConditionVerdict& first() const { return conditions[lead]; }
 };
+/// The one whose answer comes first. @pre not empty.
+const Verdict& most_urgent(const std::vector<Verdict>& verdicts);
 
 /// The exact interval of a share, 95 %. @pre flown ≥ 1.
 campaign::Interval exact_interval(std::size_t reached, std::size_t flown);
@@ -155,6 +202,10 @@ Table stages_table(const std::string& condition, const Pace& pace);
 
 /// The verdicts of each scenario, the points of a sweep together.
 std::vector<std::vector<Verdict>> by_scenario(std::vector<Verdict> verdicts);
+
+/// The answer of each scenario in one line, which begins with its name; the most urgent first.
+/// Empty for one scenario.
+std::vector<Answer> headlines_of(const std::vector<std::vector<Verdict>>& groups);
 
 enum class Markup { kPlain, kMarkdown, kTerminal };  ///< of a terminal: plain, with colours
 /// Answers and advice as lines, with a line that is empty at the end.

@@ -141,11 +141,12 @@ struct Scenario {
   std::filesystem::path file;  ///< absolute
   std::string name;            ///< letters, digits, '_', '-', '.'; with settings, their values too
   std::string description;
-  std::vector<Setting> settings{};    ///< not of the file: values that were replaced
-  std::filesystem::path world;        ///< absolute
-  sim::WorldOptions world_options{};  ///< not of the file: how to read the world
-  bool has_laid_profile = false;      ///< not of the file: see lay_profile
-  Duration step{std::chrono::milliseconds(1)};
+  std::vector<Setting> settings{};                   ///< not of the file: values that were replaced
+  std::filesystem::path world;                       ///< absolute
+  sim::WorldOptions world_options{};                 ///< not of the file: how to read the world
+  bool has_laid_profile = false;                     ///< not of the file: see lay_profile
+  std::optional<Duration> step{};                    ///< none: that of the world
+  FileLocation step_at{};                            ///< of its key; empty: there is none
   Duration time_limit{0};                            ///< of ST
   Duration hang_limit{std::chrono::seconds(30)};     ///< of WT without a message from a SUT
   Duration connect_limit{std::chrono::seconds(30)};  ///< of WT until every SUT has joined
@@ -159,6 +160,7 @@ struct Scenario {
   std::vector<Condition> conditions;  ///< at least one; the first is the default
   std::vector<Metric> metrics;
   Duration ground_truth_period{std::chrono::milliseconds(10)};
+  FileLocation ground_truth_at{};  ///< of its key; empty: there is none
   bool record_images = false;
   Duration image_period{0};  ///< least ST between two recorded images of one camera; 0: every one
   /// Every file that was named: the scenario itself, world, models, profiles, delay samples, the
@@ -249,12 +251,19 @@ std::vector<std::string> profile_names(const Scenario& scenario, const Condition
 /// its metrics names a sensor that the UAV does not have; if an entry matches several sensors, or
 /// two entries one sensor; if a key is not supported by the sensor's kind; or if the resulting
 /// values exclude each other (a rangefinder's minimum that is not below its maximum, a camera with
-/// an exposure longer than its period).
+/// an exposure longer than its period); or if a periodic sensor would measure more than once in a
+/// step. Where the step makes the time between two measurements vary by more than a tenth, `warn`
+/// gets a line as well.
 /// @pre `world` was loaded from `world_request(scenario, seed)`; `condition` is of `scenario`.
 std::vector<std::vector<uav::SensorTiming>> resolve_sensors(const Scenario& scenario,
                                                             const Condition& condition,
                                                             sim::World& world,
                                                             const sim::WarningSink& warn);
+
+/// Gives `world` the scenario's step, if it has one.
+/// @throws Error(kBadFile) at the key if the scenario's period of the ground truth is shorter than
+/// the step. @pre as of `resolve_sensors`.
+void resolve_step(const Scenario& scenario, sim::World& world);
 
 /// Gives the UAVs of `world` their models of energy, with the power of the condition's computer.
 /// @throws Error(kBadFile) with file and line, about "rotor" or "battery", if the battery cannot

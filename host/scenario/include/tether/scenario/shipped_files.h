@@ -1,20 +1,32 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace tether::scenario {
 
 /// The kinds of files that Tether ships.
-enum class ShippedKind { kScenario, kCampaign, kWorld, kProfile, kTarget };
+enum class ShippedKind {
+  kScenario,
+  kCampaign,
+  kMission,
+  kWorld,
+  kModel,
+  kProfile,
+  kEnergy,
+  kTarget,
+  kRig
+};
+constexpr int kShippedKinds = 9;
 
-/// "scenario", ...
+/// "scenario", "energy file", ...
 const char* to_text(ShippedKind kind);
 
 struct ShippedFile {
-  std::string name;         ///< of the file, without its extension
-  std::string description;  ///< one line; of a world the beginning of its first comment
+  std::string name;         ///< of the file, without its extension; of a model's folder
+  std::string description;  ///< one line; of an SDF file the beginning of its first comment
 };
 
 /// The files that Tether ships, found by name. Reads the folder at each call; thread-safe.
@@ -25,7 +37,7 @@ class ShippedFiles {
   explicit ShippedFiles(std::filesystem::path data) : data_(std::move(data)) {}
 
   /// The files that belong to a program: share/tether beside bin/ where it is installed, or data/
-  /// of the source tree in whose build/PRESET/bin it is.
+  /// of the source tree that it is in.
   static ShippedFiles of_program(const std::filesystem::path& program);
 
   /// The folder that holds them.
@@ -37,13 +49,23 @@ class ShippedFiles {
   /// @throws Error(kBadFile) if a file cannot be read.
   std::vector<ShippedFile> list(ShippedKind kind) const;
 
-  /// What a command line means by `given`: a path, if there is such a file or if it looks like a
-  /// path (it has a folder or an extension), else the shipped file of that name.
-  /// @throws Error(kUsage), about `given`, with the nearest name, if there is neither.
+  /// The file of that name; it need not exist.
+  std::filesystem::path file_of(ShippedKind kind, const std::string& name) const;
+
+  /// What a file in `folder` means by `given`: nothing if it is a path, because there is such a
+  /// file, or because it has a folder or an extension; else the shipped file of that name.
+  /// @throws Error(kUsage), about `given`, with the nearest name, if there is neither; or if a file
+  /// of the same kind in `folder` has that name and an extension, so that either may be meant.
+  std::optional<std::filesystem::path> named(ShippedKind kind, const std::string& given,
+                                             const std::filesystem::path& folder) const;
+
+  /// The same for a command line, of which paths are returned as they are.
   std::filesystem::path find(ShippedKind kind, const std::string& given) const;
 
  private:
-  std::filesystem::path file_of(ShippedKind kind, const std::string& name) const;
+  bool has(ShippedKind kind, const std::string& name) const;
+  std::string why_none(ShippedKind kind, const std::string& given,
+                       const std::filesystem::path& folder) const;
 
   std::filesystem::path data_;
 };

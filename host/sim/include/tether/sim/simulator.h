@@ -82,6 +82,9 @@ class Simulator {
   /// At `now()`.
   virtual GroundTruth ground_truth(std::size_t uav) const = 0;
 
+  /// Whether UAVs move by the forces of their rotors, gravity, drag and contacts alone, so that no
+  /// velocity jumps.
+  virtual bool moves_by_forces() const { return false; }
   /// Whether the simulator reports contacts; if not, `take_contacts` returns nothing.
   virtual bool reports_contacts() const = 0;
   /// The contacts of UAVs that began before `now()` and were not taken yet, in the order of time.
@@ -97,8 +100,8 @@ class Simulator {
 
   /// The battery at `now()`. None: the UAV has no model of energy, or it is not simulated.
   virtual std::optional<energy::Status> battery(std::size_t /*uav*/) const { return std::nullopt; }
-  /// The UAV's computer computed for that long, summed over its cores (energy::Meter::computed).
-  virtual void computed(std::size_t /*uav*/, Duration /*busy*/) {}
+  /// From now on, so many cores of the UAV's computer are busy (energy::Meter::computing).
+  virtual void computing(std::size_t /*uav*/, double /*cores*/) {}
 
   /// Name and version, for the record: "MuJoCo 2.2.2, software renderer".
   virtual std::string description() const = 0;

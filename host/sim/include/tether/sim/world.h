@@ -206,6 +206,8 @@ struct World {
   std::filesystem::path file;  ///< its own SDF file, absolute; empty: none
   double gravity_m_s2 = 9.81;  ///< along −z of W
   Duration step = std::chrono::milliseconds(1);
+  std::string step_from = "default";  ///< who sets the step: "default", "world" or "scenario"
+  FileLocation step_at{};             ///< where; empty: nobody does
   uav::Vec3 ambient_rgb{0.4, 0.4, 0.4};
   uav::Vec3 background_rgb{0.7, 0.7, 0.7};
   std::vector<Model> models;
@@ -251,6 +253,13 @@ using tether::WarningSink;
 /// Maximum number of links of dynamic models in a world. The engine's memory grows with the square
 /// of their number.
 inline constexpr std::size_t kMaxMovingLinks = 200;
+
+/// " (set at FILE:LINE)" of the world's step; empty if nobody sets it.
+std::string set_at(const World& world);
+
+/// Limits of the step of a simulation.
+inline constexpr Duration kLeastStep = std::chrono::microseconds(10);
+inline constexpr Duration kMostStep = std::chrono::milliseconds(100);
 
 /// The name of the model with the number that a view has for each of its pixels: the models of the
 /// world from 1, then the UAVs (0: none of them). @throws std::out_of_range for another number.

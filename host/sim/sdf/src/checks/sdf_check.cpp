@@ -98,42 +98,6 @@ const ElementTable kWithoutEffect = {
     {"depth_camera", {"output"}},
 };
 
-/// What follows if an element is not represented: by the element, else by its parent, else nothing.
-const std::map<std::string, Consequence, std::less<>> kConsequenceOfElement = {
-    {"actor", Consequence::kMissing},
-    {"population", Consequence::kMissing},
-    {"road", Consequence::kMissing},
-    {"particle_emitter", Consequence::kLooksDifferent},
-    {"projector", Consequence::kLooksDifferent},
-    {"laser_retro", Consequence::kNoEffect},
-    {"enable_wind", Consequence::kBehavesDifferent},
-    {"gravity", Consequence::kBehavesDifferent},
-    {"joint", Consequence::kBehavesDifferent},
-    {"kinematic", Consequence::kBehavesDifferent},
-    {"self_collide", Consequence::kBehavesDifferent},
-    {"velocity_decay", Consequence::kBehavesDifferent},
-    {"wind", Consequence::kBehavesDifferent},
-};
-const std::map<std::string, Consequence, std::less<>> kConsequenceOfParent = {
-    {"geometry", Consequence::kMissing},           {"attenuation", Consequence::kLooksDifferent},
-    {"light", Consequence::kLooksDifferent},       {"material", Consequence::kLooksDifferent},
-    {"metal", Consequence::kLooksDifferent},       {"mesh", Consequence::kLooksDifferent},
-    {"pbr", Consequence::kLooksDifferent},         {"scene", Consequence::kLooksDifferent},
-    {"specular", Consequence::kLooksDifferent},    {"spot", Consequence::kLooksDifferent},
-    {"visual", Consequence::kLooksDifferent},      {"camera", Consequence::kBehavesDifferent},
-    {"collision", Consequence::kBehavesDifferent}, {"friction", Consequence::kBehavesDifferent},
-    {"imu", Consequence::kBehavesDifferent},       {"inertial", Consequence::kBehavesDifferent},
-    {"noise", Consequence::kBehavesDifferent},     {"ode", Consequence::kBehavesDifferent},
-    {"surface", Consequence::kBehavesDifferent},
-};
-
-Consequence consequence_of(std::string_view parent, std::string_view child) {
-  const auto of_element = kConsequenceOfElement.find(child);
-  if (of_element != kConsequenceOfElement.end()) return of_element->second;
-  const auto of_parent = kConsequenceOfParent.find(parent);
-  return of_parent != kConsequenceOfParent.end() ? of_parent->second : Consequence::kNoEffect;
-}
-
 /// Sensor types that Tether represents.
 const Names kSensorTypes = {"camera",
                             "depth",
@@ -249,7 +213,7 @@ void check_distortion_center(const SdfSource& source, const std::string& parent,
   if (parent != "distortion" || element->GetName() != "center") return;
   const auto center = element->Get<ignition::math::Vector2d>();
   if (center.X() == 0.5 && center.Y() == 0.5) return;
-  warn_at(source, element, Consequence::kLooksDifferent,
+  warn_at(source, element, Effect(Consequence::kLooksDifferent, true),
           "is not represented: the distortion is centred on the optical axis; use 0.5 0.5, and set "
           "a principal point that is not in the middle by <cx> and <cy> of <lens>",
           warn);
@@ -288,13 +252,13 @@ class Walk {
   bool is_represented(const std::string& parent, const sdf::ElementPtr& element) const {
     const std::string& name = element->GetName();
     if (contains(kWithoutEffect, parent, name) || is_own_plugin(element)) return false;
-    if (name == "inertial" && is_static(element)) return false;
+    if (name == "inertial" && is_in_static_model(element)) return false;
     if (purpose_ == SdfPurpose::kUav && parent == "model" && is_battery_plugin(element)) {
       warn_of_ignored(source_, element, warn_);
       return true;
     }
     if (!is_known(purpose_, parent, name)) {
-      warn_at(source_, element, consequence_of(parent, name), unrepresented(parent, element),
+      warn_at(source_, element, effect_without(element, purpose_), unrepresented(parent, element),
               warn_);
       return false;
     }
@@ -311,13 +275,6 @@ class Walk {
       return false;
     }
     return true;
-  }
-
-  /// Whether it is in a model that is static or is nested in one that is.
-  static bool is_static(const sdf::ElementPtr& element) {
-    for (sdf::ElementPtr e = element->GetParent(); e; e = e->GetParent())
-      if (e->GetName() == "model" && e->Get<bool>("static", false).first) return true;
-    return false;
   }
 
   static bool is_own_plugin(const sdf::ElementPtr& element) {
@@ -366,9 +323,11 @@ bool is_battery_plugin(const sdf::ElementPtr& element) {
   return has("name", "LinearBatteryPlugin") || has("filename", "LinearBatteryPlugin");
 }
 
-void warn_at(const SdfSource& source, const sdf::ElementPtr& element, Consequence consequence,
+void warn_at(const SdfSource& source, const sdf::ElementPtr& element, const Effect& effect,
              const std::string& message, const WarningSink& warn) {
-  if (warn) warn({consequence, source.where(element), describe(element), message});
+  if (warn)
+    warn({effect.consequence, source.where(element), describe(element), message,
+          effect.can_change_verdict});
 }
 
 void refuse(const SdfSource& source, const sdf::ElementPtr& element, const std::string& message) {

@@ -1,13 +1,11 @@
 #pragma once
 
+#include "checks/sdf_effects.h"
 #include "files/sdf_source.h"
 
 #include <tether/sim/world.h>
 
 namespace tether::sim {
-
-/// What a file is read for: sensors belong to UAVs, lights and physics to worlds.
-enum class SdfPurpose { kWorld, kUav };
 
 /// Walks through everything that the file says: warns of each element that Tether does not
 /// represent and removes it, and refuses values that no scene can have.
@@ -18,7 +16,7 @@ void check_elements(const SdfSource& source, SdfPurpose purpose, const WarningSi
 bool is_battery_plugin(const sdf::ElementPtr& element);
 
 /// Warns about an element: its place, and `describe(element)` as the subject.
-void warn_at(const SdfSource& source, const sdf::ElementPtr& element, Consequence consequence,
+void warn_at(const SdfSource& source, const sdf::ElementPtr& element, const Effect& effect,
              const std::string& message, const WarningSink& warn);
 /// Refuses an element. The error has the element's place, `describe(element)` as its subject, and
 /// a message with the model of the element.

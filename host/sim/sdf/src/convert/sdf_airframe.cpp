@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <string>
+#include <vector>
 
 namespace tether::sim {
 
@@ -13,24 +14,26 @@ using uav::MultirotorParameters;
 
 constexpr std::size_t kMinRotors = 4;
 
-/// The numbers of <tether:multirotor>, in the order in which a missing one is reported.
+/// The numbers of <tether:multirotor>. What is rarely known of a UAV may be missing: it is then
+/// that of the Hummingbird (docs/guide/your-own-uav.md).
 struct NumberElement {
   const char* name;
   double MultirotorParameters::*member;
   bool may_be_zero;
+  bool may_be_missing;
 };
 constexpr NumberElement kNumbers[] = {
-    {"thrust_coefficient_N_s2", &MultirotorParameters::thrust_coefficient, false},
-    {"moment_coefficient_m", &MultirotorParameters::moment_coefficient_m, false},
-    {"rotor_drag_N_s2_per_m", &MultirotorParameters::drag_coefficient, true},
-    {"linear_drag_N_s_per_m", &MultirotorParameters::linear_drag_N_s_m, true},
-    {"max_rotor_speed_rad_s", &MultirotorParameters::max_rotor_speed_rad_s, false},
-    {"time_constant_up_s", &MultirotorParameters::time_constant_up_s, false},
-    {"time_constant_down_s", &MultirotorParameters::time_constant_down_s, false},
-    {"max_tilt_rad", &MultirotorParameters::max_tilt_rad, false},
-    {"max_horizontal_speed_m_s", &MultirotorParameters::max_horizontal_speed_m_s, false},
-    {"max_vertical_speed_m_s", &MultirotorParameters::max_vertical_speed_m_s, false},
-    {"max_yaw_rate_rad_s", &MultirotorParameters::max_yaw_rate_rad_s, false},
+    {"thrust_coefficient_N_s2", &MultirotorParameters::thrust_coefficient, false, false},
+    {"moment_coefficient_m", &MultirotorParameters::moment_coefficient_m, false, true},
+    {"rotor_drag_N_s2_per_m", &MultirotorParameters::drag_coefficient, true, true},
+    {"linear_drag_N_s_per_m", &MultirotorParameters::linear_drag_N_s_m, true, true},
+    {"max_rotor_speed_rad_s", &MultirotorParameters::max_rotor_speed_rad_s, false, false},
+    {"time_constant_up_s", &MultirotorParameters::time_constant_up_s, false, true},
+    {"time_constant_down_s", &MultirotorParameters::time_constant_down_s, false, true},
+    {"max_tilt_rad", &MultirotorParameters::max_tilt_rad, false, true},
+    {"max_horizontal_speed_m_s", &MultirotorParameters::max_horizontal_speed_m_s, false, true},
+    {"max_vertical_speed_m_s", &MultirotorParameters::max_vertical_speed_m_s, false, true},
+    {"max_yaw_rate_rad_s", &MultirotorParameters::max_yaw_rate_rad_s, false, true},
 };
 
 const NumberElement* find_number(const std::string& name) {
@@ -44,10 +47,15 @@ std::string allowed_elements() {
   return names;
 }
 
-sdf::ElementPtr required(const SdfSource& source, const sdf::ElementPtr& parent, const char* name) {
-  const sdf::ElementPtr element = parent->FindElement(name);
-  if (!element) refuse(source, parent, "has no <" + std::string(name) + ">, which is required");
-  return element;
+/// Names all of those that are missing.
+void require(const SdfSource& source, const sdf::ElementPtr& parent,
+             const std::vector<const char*>& names) {
+  std::string missing;
+  for (const char* name : names)
+    if (!parent->FindElement(name))
+      missing += (missing.empty() ? "<" : ", <") + std::string(name) + ">";
+  if (!missing.empty())
+    refuse(source, parent, "lacks " + missing + "; the guide your-own-uav.md explains each");
 }
 
 double read_number(const SdfSource& source, const sdf::ElementPtr& element, bool may_be_zero) {
@@ -61,8 +69,9 @@ double read_number(const SdfSource& source, const sdf::ElementPtr& element, bool
 }
 
 uav::Rotor read_rotor(const SdfSource& source, const sdf::ElementPtr& element) {
-  const auto position = read_numbers(source, required(source, element, "position_m"), 3);
-  const sdf::ElementPtr direction = required(source, element, "direction");
+  require(source, element, {"position_m", "direction"});
+  const auto position = read_numbers(source, element->FindElement("position_m"), 3);
+  const sdf::ElementPtr direction = element->FindElement("direction");
   const std::string text = direction->GetValue() ? direction->GetValue()->GetAsString() : "";
   if (text != "cw" && text != "ccw") {
     refuse(source, direction, "is '" + text + "'; it must be cw or ccw, seen from above");
@@ -104,10 +113,17 @@ MultirotorParameters read_airframe(const SdfSource& source, const sdf::ElementPt
   const sdf::ElementPtr multirotor = model->FindElement("tether:multirotor");
   if (!multirotor) {
     refuse(source, model,
-           "has no <tether:multirotor>; a UAV needs one, with its rotors and limits");
+           "has no <tether:multirotor>; a UAV needs one, with its rotors, "
+           "<thrust_coefficient_N_s2> and <max_rotor_speed_rad_s>: the guide your-own-uav.md");
   }
   MultirotorParameters airframe;
-  for (const NumberElement& number : kNumbers) required(source, multirotor, number.name);
+  const MultirotorParameters typical = uav::hummingbird();
+  std::vector<const char*> needed = {"rotor"};
+  for (const NumberElement& number : kNumbers) {
+    if (!number.may_be_missing) needed.push_back(number.name);
+    airframe.*number.member = typical.*number.member;
+  }
+  require(source, multirotor, needed);
   read_children(source, multirotor, airframe);
   if (airframe.rotors.size() < kMinRotors ||
       airframe.rotors.size() > uav::MultirotorState::kMaxRotors) {

@@ -74,7 +74,7 @@ void read_albedo_map(const SdfSource& source, const sdf::ElementPtr& element,
     material.albedo_map_at = source.where(map);
     return;
   }
-  warn_at(source, map, Consequence::kLooksDifferent,
+  warn_at(source, map, Effect(Consequence::kLooksDifferent, true),
           "names '" + map->Get<std::string>() +
               (file.empty() ? "', which is not found; the colours are used"
                             : "', which is neither a PNG nor a JPEG file; the colours are used"),

@@ -82,7 +82,7 @@ CameraModel read_camera(const SdfSource& source, const sdf::Camera& camera, uav:
   const sdf::PixelFormatType format = camera.PixelFormat();
   if (uav::has_color(kind) && format != sdf::PixelFormatType::RGB_INT8 &&
       format != sdf::PixelFormatType::UNKNOWN_PIXEL_FORMAT) {
-    warn_at(source, camera.Element(), Consequence::kLooksDifferent,
+    warn_at(source, camera.Element(), Effect(Consequence::kLooksDifferent, true),
             "has the image format " + camera.PixelFormatStr() + "; images are R8G8B8", warn);
   }
   CameraModel model{read_intrinsics(camera), camera.NearClip(), camera.FarClip(),
@@ -165,6 +165,10 @@ RangeModel read_range(const SdfSource& source, const sdf::Lidar& lidar, const Wa
   if (lidar.RangeMin() >= lidar.RangeMax()) {
     refuse(source, lidar.Element()->FindElement("range"),
            "has a minimum that is not below its maximum");
+  }
+  if (!is_single_ray(lidar)) {
+    warn_at(source, lidar.Element(), Consequence::kBehavesDifferent,
+            "is a scan, of which only the nearest distance is measured", warn);
   }
   return {lidar.RangeMin(), lidar.RangeMax(), lidar.RangeResolution(),
           read_noise(source, lidar.LidarNoise(), warn), read_rays(source, lidar)};

@@ -7,6 +7,9 @@ namespace tether::sim {
 
 namespace {
 
+/// Of the airframe's mass: a part that is lighter does not change how it flies.
+constexpr double kLightPart = 0.01;
+
 /// The first link, or the one named base_link.
 const sdf::Link& find_body_link(const SdfSource& source, const sdf::Model& model) {
   if (const sdf::Link* base = model.LinkByName("base_link")) return *base;
@@ -29,7 +32,8 @@ void warn_of_moving_joints(const SdfSource& source, const sdf::Model& model,
   for (std::uint64_t i = 0; i < model.JointCount(); ++i) {
     const sdf::Joint& joint = *model.JointByIndex(i);
     if (joint.Type() == sdf::JointType::FIXED) continue;
-    warn_at(source, joint.Element(), Consequence::kBehavesDifferent,
+    // What its link does to the flight, the warning of the link says.
+    warn_at(source, joint.Element(), Effect(Consequence::kBehavesDifferent, false),
             "is a moving joint, which is not represented; ignored", warn);
   }
 }
@@ -59,7 +63,12 @@ void merge_link(const SdfSource& source, const sdf::Link& part, const uav::Pose&
     uav.body.collisions.push_back(std::move(collision));
   }
   add_sensors(source, part, X_BL, warn, uav);
-  warn_at(source, part.Element(), Consequence::kBehavesDifferent,
+  // The airframe's mass is that of all links: only a payload that the body does not include flies
+  // differently. A link without a mass has SDF's, which nobody weighed.
+  const sdf::ElementPtr inertial = part.Element()->FindElement("inertial");
+  const bool is_heavy =
+      inertial && inertial->HasElement("mass") && link.mass_kg > kLightPart * uav.airframe.mass_kg;
+  warn_at(source, part.Element(), Effect(Consequence::kBehavesDifferent, is_heavy),
           "is merged into link '" + uav.body.name + "'; its mass is not added", warn);
 }
 
@@ -72,7 +81,8 @@ void add_fixed_links(const SdfSource& source, const sdf::Model& model, const sdf
     if (is_fixed_to(model, link.Name(), body.Name())) {
       merge_link(source, link, X_BM, warn, uav);
     } else {
-      warn_at(source, link.Element(), Consequence::kMissing,
+      const bool acts = link.SensorCount() > 0 || link.CollisionCount() > 0;
+      warn_at(source, link.Element(), Effect(Consequence::kMissing, acts),
               "is not fixed to link '" + body.Name() + "'; left out", warn);
     }
   }

@@ -17,6 +17,7 @@ struct Unrepresented {
   int line;
   const char* element;
   Consequence consequence;
+  bool can_change_verdict;
 };
 
 std::string link(const std::string& content) {
@@ -29,55 +30,96 @@ const std::string kSphere = "<geometry><sphere><radius>1</radius></sphere></geom
 
 TEST(SdfWarning, NamesTheElement) {
   const Unrepresented cases[] = {
-      {"\n<bogus>3</bogus>", 4, "<bogus> of world 'w'", Consequence::kNoEffect},
-      {link("\n<tether:magic/>"), 6, "<tether:magic> of link 'l'", Consequence::kNoEffect},
+      {"\n<bogus>3</bogus>", 4, "<bogus> of world 'w'", Consequence::kNoEffect, true},
+      {link("\n<tether:magic/>"), 6, "<tether:magic> of link 'l'", Consequence::kNoEffect, true},
       {"<model name='m'><link name='l'/>\n<tether:multirotor/></model>", 4,
-       "<tether:multirotor> of model 'm'", Consequence::kNoEffect},
+       "<tether:multirotor> of model 'm'", Consequence::kNoEffect, false},
       {"<model name='m'><link name='a'/><link name='b'/>\n"
        "<joint name='hinge' type='revolute'><parent>a</parent><child>b</child>"
        "<axis><xyz>0 0 1</xyz></axis></joint></model>",
-       4, "joint 'hinge'", Consequence::kBehavesDifferent},
-      {"<plugin name='wind' filename='libWind.so'/>", 3, "plugin 'wind'", Consequence::kNoEffect},
+       4, "joint 'hinge'", Consequence::kBehavesDifferent, true},
+      {"<plugin name='wind' filename='libWind.so'/>", 3, "plugin 'wind'",
+       Consequence::kBehavesDifferent, true},
       {"<actor name='walker'><skin><filename>a.dae</filename></skin></actor>", 3, "actor 'walker'",
-       Consequence::kMissing},
+       Consequence::kMissing, true},
       {"<wind><linear_velocity>1 0 0</linear_velocity></wind>", 3, "<wind> of world 'w'",
-       Consequence::kBehavesDifferent},
+       Consequence::kBehavesDifferent, true},
       {"<scene>\n<fog><type>linear</type></fog></scene>", 4, "<fog> of world 'w'",
-       Consequence::kLooksDifferent},
+       Consequence::kLooksDifferent, true},
       {"<physics name='p' type='ode'><ode/></physics>", 3, "<ode> of physics 'p'",
-       Consequence::kNoEffect},
+       Consequence::kNoEffect, false},
       {visual_of("<geometry><heightmap><uri>h.png</uri></heightmap></geometry>"), 5,
-       "<heightmap> of visual 'v'", Consequence::kMissing},
+       "<heightmap> of visual 'v'", Consequence::kMissing, true},
       {visual_of("<geometry><polyline><point>0 0</point><point>1 0</point><point>0 1</point>"
                  "<height>1</height></polyline></geometry>"),
-       5, "<polyline> of visual 'v'", Consequence::kMissing},
+       5, "<polyline> of visual 'v'", Consequence::kMissing, true},
       {visual_of(kSphere + "<material>\n<script><uri>a</uri><name>Gazebo/Blue</name></script>"
                            "</material>"),
-       6, "<script> of visual 'v'", Consequence::kLooksDifferent},
+       6, "<script> of visual 'v'", Consequence::kLooksDifferent, true},
       {visual_of(kSphere + "<material><script><name>Gazebo/Blue</name></script></material>"), 5,
-       "<script> of visual 'v'", Consequence::kLooksDifferent},
+       "<script> of visual 'v'", Consequence::kLooksDifferent, true},
       {visual_of(kSphere + "<material><pbr><metal><normal_map>n.png</normal_map></metal></pbr>"
                            "</material>"),
-       5, "<normal_map> of visual 'v'", Consequence::kLooksDifferent},
-      {link("<sensor name='s' type='imu'/>"), 5, "sensor 's'", Consequence::kNoEffect},
+       5, "<normal_map> of visual 'v'", Consequence::kLooksDifferent, false},
+      {link("<sensor name='s' type='imu'/>"), 5, "sensor 's'", Consequence::kNoEffect, false},
       {"<model name='m'><link name='l'>\n<light name='lamp' type='point'/></link></model>", 4,
-       "light 'lamp'", Consequence::kLooksDifferent},
+       "light 'lamp'", Consequence::kLooksDifferent, false},
       {"<light name='lamp' type='point'><attenuation>\n<range>20</range></attenuation></light>", 4,
-       "<range> of light 'lamp'", Consequence::kLooksDifferent},
+       "<range> of light 'lamp'", Consequence::kLooksDifferent, false},
       {"<light name='lamp' type='spot'><spot><outer_angle>0.8</outer_angle>\n"
        "<inner_angle>0.2</inner_angle><falloff>1</falloff></spot></light>",
-       4, "<inner_angle> of light 'lamp'", Consequence::kLooksDifferent},
+       4, "<inner_angle> of light 'lamp'", Consequence::kLooksDifferent, false},
       {"<model name='m'>\n<link name='l' colour='red'/></model>", 4, "attribute colour",
-       Consequence::kNoEffect},
+       Consequence::kNoEffect, false},
       {"<model name='m'><link name='l'/>\n<model name='n'><link name='l'/></model></model>", 4,
-       "model 'n'", Consequence::kBehavesDifferent},
+       "model 'n'", Consequence::kBehavesDifferent, true},
   };
   const ScratchFolder folder;
   for (const Unrepresented& given : cases) {
     const auto file = folder.write("w.sdf", world_sdf(given.text));
     EXPECT_THAT(load({file, {}, {}}).warnings,
-                ElementsAre(is_warning(given.consequence, file, given.line, given.element)));
+                ElementsAre(AllOf(is_warning(given.consequence, file, given.line, given.element),
+                                  Field(&Warning::can_change_verdict, given.can_change_verdict))));
   }
+}
+
+std::string model_of(const std::string& content) {
+  return "<model name='m'><link name='l'>" + content + "</link></model>";
+}
+
+TEST(SdfWarning, ChangesNoVerdictForWhatHoldsAnyway) {
+  for (const std::string& content : {
+           model_of("<gravity>1</gravity>"),
+           model_of("<self_collide>0</self_collide>"),
+           model_of("<kinematic>false</kinematic>"),
+           model_of("<velocity_decay/>"),
+           model_of("<velocity_decay><linear>0.0</linear></velocity_decay>"),
+           link("<gravity>false</gravity>"),
+           link("<enable_wind>true</enable_wind>"),
+           std::string("<wind><linear_velocity>0 0 0</linear_velocity></wind>"),
+           std::string("<plugin name='p' filename='gz-sim-physics-system'/>"),
+           std::string("<plugin name='p' filename='libignition-gazebo6-sensors-system.so'/>"),
+           std::string("<plugin name='p' filename='/opt/ros/lib/libgazebo_ros_init.so'/>"),
+       })
+    EXPECT_THAT(load_content(content).warnings,
+                ElementsAre(Field(&Warning::can_change_verdict, false)))
+        << content;
+}
+
+TEST(SdfWarning, CanChangeAVerdictForWhatMovesSomething) {
+  for (const std::string& content : {
+           model_of("<gravity>false</gravity>"),
+           model_of("<enable_wind>true</enable_wind>"),
+           model_of("<velocity_decay><linear>0.5</linear></velocity_decay>"),
+           std::string("<plugin name='p' filename='libmoving_platform.so'/>"),
+           std::string("<plugin name='p' filename='gz-sim-wind-effects-system'/>"),
+           std::string("<plugin name='p' filename='gz-sim-'/>"),
+           std::string("<plugin name='p' filename='-system'/>"),
+           std::string("<plugin name='p' filename=''/>"),
+       })
+    EXPECT_THAT(load_content(content).warnings,
+                ElementsAre(Field(&Warning::can_change_verdict, true)))
+        << content;
 }
 
 TEST(SdfWarning, IsNotGivenForElementsWithoutEffect) {

@@ -6,6 +6,7 @@
 namespace tether::sim {
 namespace {
 
+using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using uav::Vec3;
 
@@ -26,6 +27,46 @@ TEST_F(SdfAirframe, ReadsTheAirframe) {
   EXPECT_THAT(warnings(kUav), IsEmpty());
 }
 
+/// kUav with nothing in <tether:multirotor> but this.
+std::string with_multirotor(const std::string& elements) {
+  std::string model = kUav;
+  const std::size_t begin = model.find("<rotor>");
+  return model.replace(begin, model.find("</tether:multirotor>") - begin, elements);
+}
+
+TEST_F(SdfAirframe, HasTheHummingbirdsValuesForWhatIsMissing) {
+  std::string rotors;
+  for (const char* rotor :
+       {"1 0 0</position_m><direction>cw", "0 1 0</position_m><direction>ccw",
+        "-1 0 0</position_m><direction>cw", "0 -1 0</position_m><direction>ccw"})
+    rotors += "<rotor><position_m>" + std::string(rotor) + "</direction></rotor>\n";
+  const uav::MultirotorParameters airframe =
+      read(with_multirotor(rotors + "<thrust_coefficient_N_s2>1e-5</thrust_coefficient_N_s2>"
+                                    "<max_rotor_speed_rad_s>900</max_rotor_speed_rad_s>"))
+          .airframe;
+  const uav::MultirotorParameters hummingbird = uav::hummingbird();
+  EXPECT_EQ(airframe.moment_coefficient_m, hummingbird.moment_coefficient_m);
+  EXPECT_EQ(airframe.drag_coefficient, hummingbird.drag_coefficient);
+  EXPECT_EQ(airframe.linear_drag_N_s_m, hummingbird.linear_drag_N_s_m);
+  EXPECT_EQ(airframe.time_constant_up_s, hummingbird.time_constant_up_s);
+  EXPECT_EQ(airframe.time_constant_down_s, hummingbird.time_constant_down_s);
+  EXPECT_EQ(airframe.max_tilt_rad, hummingbird.max_tilt_rad);
+  EXPECT_EQ(airframe.max_horizontal_speed_m_s, hummingbird.max_horizontal_speed_m_s);
+  EXPECT_EQ(airframe.max_vertical_speed_m_s, hummingbird.max_vertical_speed_m_s);
+  EXPECT_EQ(airframe.max_yaw_rate_rad_s, hummingbird.max_yaw_rate_rad_s);
+}
+
+TEST_F(SdfAirframe, NamesAllThatIsMissingAtOnce) {
+  const auto message = [&](const std::string& elements) {
+    return std::string(refusal(request(with_multirotor(elements))).what());
+  };
+  for (const char* name : {"<rotor>", "<thrust_coefficient_N_s2>", "<max_rotor_speed_rad_s>"})
+    EXPECT_THAT(message("\n"), HasSubstr(name));
+  EXPECT_THAT(message("<rotor/><thrust_coefficient_N_s2>1</thrust_coefficient_N_s2>"
+                      "<max_rotor_speed_rad_s>1</max_rotor_speed_rad_s>"),
+              HasSubstr("lacks <position_m>, <direction>;"));
+}
+
 TEST_F(SdfAirframe, RequiresAMultirotor) {
   std::string model = kUav;
   const std::size_t begin = model.find("<tether:multirotor>");
@@ -41,7 +82,7 @@ TEST_F(BadAirframes, AreRefused) {
   const char* const kTilt = "<max_tilt_rad> of model 'drone'";
   const char* const kPosition = "<position_m> of model 'drone'";
   expect_refused({
-      {"<max_tilt_rad>0.5</max_tilt_rad>\n", "", 3, kMultirotor},
+      {"<max_rotor_speed_rad_s>900</max_rotor_speed_rad_s>\n", "", 3, kMultirotor},
       {"<max_tilt_rad>", "<wings>2</wings>\n<max_tilt_rad>", 15, "<wings> of model 'drone'"},
       {"<max_tilt_rad>0.5", "<max_tilt_rad>-0.5", 15, kTilt},
       {"<max_tilt_rad>0.5", "<max_tilt_rad>0", 15, kTilt},

@@ -40,6 +40,8 @@ class Sizing {
   Sizing(const CurveGrid& grid, bool has_margins);
 
   void add(const Flight& flight);
+  /// A flight was a copy of an earlier one at the same slowdown, which is no evidence.
+  void skip_copy() { ++copies_; }
   std::span<const Flight> flights() const { return flights_; }
   /// The answer so far. Checks the fit once it would be final.
   /// @param is_last no more flights can be flown.
@@ -59,6 +61,7 @@ class Sizing {
   const CurveGrid& grid_;
   SuccessCurve with_margins_, without_;
   std::vector<Flight> flights_;
+  std::size_t copies_ = 0;
   Basis basis_;
   double fit_ = 1.0;
 };

@@ -106,8 +106,8 @@ struct TimeAdvanceGrant {
 /// Progress: if each computing SUT requests or reports progress again, and each concurrent one
 /// stops when a reply is due, every held call is released.
 ///
-/// Each function takes a number of steps that is logarithmic in the number of SUTs, except
-/// `slowest_computing`. Not thread-safe. Allocates only in `add`.
+/// Each function takes a number of steps that is logarithmic in the number of SUTs. Not
+/// thread-safe. Allocates only in `add`.
 class BarrierSynchronizer {
  public:
   explicit BarrierSynchronizer(StepGrid grid);
@@ -159,10 +159,6 @@ class BarrierSynchronizer {
   /// The least instant at which a SUT may still send something: its bound or, of a held one, the
   /// timestamp of its reply. None without SUTs.
   std::optional<SutTime> earliest() const;
-
-  /// The SUT with the least bound of those that are not held: the simulation is blocked on it once
-  /// ST has reached lower_bound(). None if all are held.
-  std::optional<SutIndex> slowest_computing() const;
 
   /// It waits for a reply: a serial SUT with its call open; a concurrent one that has stopped where
   /// a reply was due.

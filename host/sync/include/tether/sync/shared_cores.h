@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -18,8 +19,8 @@ __extension__ using CoreUnits = unsigned __int128;
 ///
 /// What a program has computed is known from its own stamps; when that was on the board's time line
 /// depends on what the others computed meanwhile. So the time line is known up to the first
-/// instant at which some computing program's work is not known; `next` goes on up to there, stamp
-/// by stamp:
+/// instant at which some computing program's work is not known, or at which a waiting one may be
+/// woken earlier than announced; `next` goes on up to there, stamp by stamp:
 ///
 ///     ask(program, work) → next() → resume(program, reply_at), go_on(program) or leave(program)
 ///
@@ -48,12 +49,22 @@ class SharedCores {
     std::size_t program = 0;
     ExecTime at;  ///< ET of the board
   };
+  /// A program computes on so much of a core from `from` until `to`.
+  struct Use {
+    std::size_t program = 0;
+    ExecTime from;
+    ExecTime to;
+    double cores = 0.0;
+  };
+  using Used = std::function<void(const Use&)>;
   /// The next stamp, in the order of (ET, program); none until more is known. Then call `go_on`,
-  /// `resume` or `leave` for that program before any other function.
-  std::optional<Stamp> next();
+  /// `resume` or `leave` for that program before any other function. The time line does not go on
+  /// beyond `until`. `used` gets what the programs compute on the way, in the order of time.
+  std::optional<Stamp> next(ExecTime until = ExecTime::max(), const Used& used = {});
   /// It computes on without a break.
   void go_on(std::size_t program) { programs_[program].phase = Phase::kComputing; }
-  /// It waits until `at`, and computes from then on. @pre at ≥ its last stamp.
+  /// It waits until `at`, and computes from then on. While it waits, also: it is woken at `at`
+  /// already. @pre at ≥ its last stamp, and ≥ where the time line has come to.
   void resume(std::size_t program, ExecTime at);
   /// It computes no more.
   void leave(std::size_t program) { programs_[program].phase = Phase::kLeft; }

@@ -52,9 +52,9 @@ Result<ConnectOptions> options_from_environment();
 ///
 /// Under the barrier, calls are interactions in the sense of the paper (Section II): ET is stamped
 /// when the call begins, is stopped until the reply is complete, and continues from the reply's
-/// timestamp. In free-running mode ET is the wall time since the Welcome, and sleeps are real. With
-/// a CPU clock the client then stalls before each call for the time by which the virtual target
-/// is slower; ET includes this time before the stall begins.
+/// timestamp. In free-running mode nothing is held: ET follows ST, as far as the replies tell it.
+/// With a CPU clock the client then stalls before each call for the time by which the virtual
+/// target is slower; ET includes this time before the stall begins.
 Result<std::unique_ptr<Vehicle>> connect(ConnectOptions options);
 /// The same over an existing channel (tests, other transports). Ignores options.address.
 Result<std::unique_ptr<Vehicle>> connect(std::unique_ptr<link::Channel> channel,

@@ -93,7 +93,7 @@ class FakeSimulator final : public Simulator {
   std::optional<Clearance> clearance(std::size_t uav) const override;
   /// Of UAVs of the world with a model of energy: as if they hovered.
   std::optional<energy::Status> battery(std::size_t uav) const override;
-  void computed(std::size_t uav, Duration busy) override;
+  void computing(std::size_t uav, double cores) override;
   std::string description() const override { return "fake simulator"; }
 
  private:

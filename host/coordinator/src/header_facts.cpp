@@ -1,0 +1,84 @@
+#include "header_facts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <variant>
+
+#include <tether/radio/link_budget.h>
+
+namespace tether::coordinator {
+namespace {
+
+constexpr double kUnknown = std::numeric_limits<double>::infinity();
+
+double radius_m(const sim::Geometry& geometry) {
+  return std::visit(
+      sim::Visitor{
+          [](const sim::BoxGeometry& box) { return 0.5 * norm(box.size_m); },
+          [](const sim::CylinderGeometry& c) { return std::hypot(c.radius_m, 0.5 * c.length_m); },
+          [](const sim::SphereGeometry& sphere) { return sphere.radius_m; },
+          [](const sim::CapsuleGeometry& c) { return c.radius_m + 0.5 * c.length_m; },
+          [](const sim::EllipsoidGeometry& e) {
+            return std::max({e.radii_m.x, e.radii_m.y, e.radii_m.z});
+          },
+          [](const sim::PlaneGeometry&) { return 0.0; },  // on a UAV, it collides with nothing
+          [](const sim::MeshGeometry&) { return kUnknown; }},
+      geometry);
+}
+
+}  // namespace
+
+record::RadioInfo describe(const radio::Settings& radio) {
+  record::RadioInfo info{.model = "ideal",
+                         .least_delay = radio::least_delay(radio),
+                         .inbox_messages = radio.inbox_messages};
+  if (radio.model == radio::Model::kIdeal) return info;
+  info.model = "log_distance";
+  info.data_rate_bit_s = radio.data_rate_bit_s;
+  info.access = radio.access == radio::Access::kCsma ? "csma" : "tdma";
+  info.queue_messages = radio.queue_messages;
+  info.header_bytes = radio.header_bytes;
+  info.delay = radio.delay;
+  info.preamble = radio.preamble;
+  info.slot = radio.slot;
+  info.bandwidth_hz = radio.bandwidth_hz;
+  info.tx_power_dbm = radio.tx_power_dbm;
+  info.noise_figure_db = radio.noise_figure_db;
+  info.reference_loss_db = radio.reference_loss_db;
+  info.exponent = radio.exponent;
+  info.shadowing_db = radio.shadowing_db;
+  info.wall_loss_db = radio.wall_loss_db;
+  return info;
+}
+
+std::optional<record::EnergyInfo> describe_energy(const sim::Uav& uav, double gravity_m_s2) {
+  if (!uav.energy) return std::nullopt;
+  const energy::Model& model = *uav.energy;
+  record::EnergyInfo info{
+      .capacity_C = model.battery.capacity_C,
+      .resistance_ohm = model.battery.resistance_ohm,
+      .initial_charge = model.battery.initial_charge,
+      .voltage_at_charge = {},
+      .lift_W = energy::propulsion_power_W(uav.airframe, model.propulsion,
+                                           uav::hover_state(uav.airframe, gravity_m_s2, 0.0), {}),
+      .idle_W = model.computer.idle_W,
+      .busy_core_W = model.computer.busy_core_W,
+      .sensors_W = model.sensors_W};
+  for (const auto& [charge, voltage_V] : model.battery.voltage_at_charge)
+    info.voltage_at_charge.push_back({charge, voltage_V});
+  return info;
+}
+
+double extent_m(const sim::Link& body) {
+  double extent = 0.0;
+  for (const sim::Collision& collision : body.collisions)
+    extent = std::max(extent, norm(collision.X_LC.p) + radius_m(collision.geometry));
+  return std::isfinite(extent) ? extent : 0.0;
+}
+
+bool only_uavs_move(const sim::World& world) {
+  return std::ranges::all_of(world.models, &sim::Model::is_static);
+}
+
+}  // namespace tether::coordinator

@@ -1,0 +1,159 @@
+#include "tables/report_format.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include <tether/base/text_table.h>
+#include <tether/os/shell_word.h>
+#include <tether/report/verdict.h>
+
+// What to do next, in sentences.
+namespace tether::report {
+namespace {
+
+/// "`tether size face_anchor --condition target`"; empty: it cannot fly this.
+std::string size_command(const ConditionVerdict& condition, bool searches_faster) {
+  if (condition.size_arguments.empty()) return "";
+  std::string command = "tether size";
+  for (const std::string& word : condition.size_arguments) command += " " + os::shell_word(word);
+  const auto names = [&](const char* option) {
+    return std::ranges::count(condition.size_arguments, option) > 0;
+  };
+  if (searches_faster && !names("--target") && !names("--between")) command += " --between 0.1,2";
+  return "`" + command + "`";
+}
+
+/// To find out whether speed matters at all.
+std::string faster_advice(const ConditionVerdict& lead) {
+  std::string text = lead.pace && lead.pace->keeps_up()
+                         ? "The program reads every image, so the computer may not be the cause. "
+                         : "";
+  text += "To see whether speed matters, fly on a faster computer";
+  const std::vector<std::string>& words = lead.size_arguments;
+  const std::string size = size_command(lead, true);
+  if (!words.empty() && lead.condition != "host")
+    text += fmt::format(", such as `tether run {} --condition host`{}", os::shell_word(words[0]),
+                        size.empty() ? "" : ", or at several speeds");
+  return text + (size.empty() ? "." : ": " + size);
+}
+
+std::string threshold_advice(const ConditionVerdict& lead) {
+  const bool is_too_slow = lead.ruling == Ruling::kNotFastEnough;
+  const std::string what = is_too_slow
+                               ? "how much faster the computer must be"
+                               : "the headroom, that is how much slower the computer may be";
+  const std::string command = size_command(lead, is_too_slow);
+  if (!command.empty()) return fmt::format("To find {}: {}", what, command);
+  if (lead.is_on_real_board)
+    return fmt::format(
+        "A real board cannot be slowed down. To find {}: write a virtual target of the board "
+        "(`tether-sut calibrate`), and name it with `tether size SCENARIO --target`.",
+        what);
+  return fmt::format(
+      "`tether size` finds {}, for a scenario's own conditions on virtual targets. Add the one "
+      "that was flown here to the scenario.",
+      what);
+}
+
+bool is_one_board_for_all(const ConditionVerdict& condition) {
+  return condition.pace && !condition.pace->shared_board.empty() && condition.pace->boards.empty();
+}
+
+std::string stage_advice(const Advice& advice, const ConditionVerdict& lead) {
+  const bool shares = !lead.pace->shared_board.empty() || lead.pace->shares_real_board;
+  return fmt::format(
+      "Speed up “{}” first. {} up to {} per image, and the camera has one every {}: it is {} × too "
+      "slow to read them all.",
+      advice.subject, shares ? "Computing and waiting for cores take" : "Computing takes",
+      short_ms(lead.pace->p95_s), short_ms(1.0 / *lead.pace->offered_hz),
+      fixed(1.0 / *lead.pace->headroom(), 1));
+}
+
+/// For a condition of a scenario as it is.
+std::string uavs_advice(const ConditionVerdict& lead) {
+  const std::vector<std::string>& words = lead.size_arguments;
+  constexpr std::size_t kOwnCondition = 3;  // SCENARIO --condition NAME
+  if (!is_one_board_for_all(lead) || words.size() != kOwnCondition) return "";
+  return fmt::format("; to find how many UAVs it carries: `tether size {} {} {} --axis uavs`",
+                     os::shell_word(words[0]), words[1], os::shell_word(words[2]));
+}
+
+std::string sentence_of(const Advice& advice, const Verdict& verdict) {
+  using Kind = Advice::Kind;
+  const ConditionVerdict& lead = verdict.first();
+  switch (advice.kind) {
+    case Kind::kMendSetUp:
+      return lead.planned == 1 ? "Fix this, then fly again."
+                               : "Fix the cause of the failure; the campaign continues with "
+                                 "`--resume`.";
+    case Kind::kFlyAgain:
+      return lead.planned == 1 ? "You stopped the flight: fly again."
+                               : "You stopped the campaign: it continues with `--resume`.";
+    case Kind::kShowWaits:
+      return "Wait by the client library (`sleep_for`, `sleep_until`, a read with a timeout), "
+             "which "
+             "Tether sees. If that is not possible, fly with `clock = \"wall\"` and "
+             "`concurrent = true`, for which all time counts.";
+    case Kind::kRunConcurrent:
+      return "Fly with `clock = \"wall\"` and `concurrent = true`, for which threads that compute "
+             "in parallel count once.";
+    case Kind::kReadAudit:
+      return fmt::format(
+          "Run `tether audit` on the records of “{}”. If the program stamps its own time, check "
+          "that first.",
+          advice.subject);
+    case Kind::kCoolBoard:
+      return "Cool the board, or give it enough power (`tether target check`), and fly again.";
+    case Kind::kSpeedUpStage:
+      return stage_advice(advice, lead);
+    case Kind::kTryFaster:
+      return faster_advice(lead);
+    case Kind::kFindReason:
+      switch (lead.miss->evidence) {
+        case MissReason::Evidence::kEquallyFastReaches:
+          return fmt::format("Look for the reason in what differs from “{}”, such as the radio.",
+                             advice.subject);
+        case MissReason::Evidence::kKnownCause:
+          return "Fix this, then fly again.";
+        default:
+          return "Look for the reason in the program, the scenario and its limits.";
+      }
+    case Kind::kQuietMachine:
+      return "Fly again while nothing else runs on the machine, or with a counted clock.";
+    case Kind::kVarySeeds:
+      return "More flights show nothing new, because the seeds change nothing. Give the sensors "
+             "noise or delays that vary (a profile), or let the world or the start vary.";
+    case Kind::kFindThreshold:
+      return threshold_advice(lead) + uavs_advice(lead);
+    case Kind::kFlyMore:
+      if (lead.planned == 1)
+        return "One flight shows little. Fly a campaign of several seeds: `tether campaign`.";
+      if (advice.flights == 0)
+        return fmt::format("Fly more: the share is so near to {} that {} do not decide it.",
+                           kWanted, flights_text(lead.flown));
+      return fmt::format(
+          "Fly more: if this share continues, {} decide (`trials` in the campaign's file, then "
+          "`--resume`).",
+          flights_text(advice.flights));
+    case Kind::kSetLimit:
+      return "Give a metric of the scenario a limit (such as `max_s` of `time_required`), or fly a "
+             "mission with deadlines.";
+    case Kind::kSynchronise:
+      return "Fly a condition with `policy = \"conservative_barrier\"`.";
+  }
+  return "";
+}
+
+}  // namespace
+
+std::vector<std::string> advice_of(const std::vector<Verdict>& points) {
+  const Verdict& urgent = most_urgent(points);
+  std::vector<std::string> sentences;
+  const std::string where = urgent.point.empty() ? "" : fmt::format("{}: ", urgent.point);
+  for (const Advice& advice : urgent.advice)
+    sentences.push_back(where + sentence_of(advice, urgent));
+  return sentences;
+}
+
+}  // namespace tether::report

@@ -1,0 +1,230 @@
+#include "answers/miss_reason.h"
+
+#include "answers/sufficient.h"
+#include "tables/report_format.h"
+
+#include <algorithm>
+#include <functional>
+#include <tuple>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include <tether/campaign/copies.h>
+#include <tether/campaign/statistics.h>
+
+// Speed is the reason of a missed goal only where the flights show it: a condition that differs in
+// speed only is faster and reaches the goal, or computing alone takes longer than a limit on the
+// program's own pace. Other comparisons and some events show that it is probably not the reason.
+// Otherwise it is not known.
+namespace tether::report {
+namespace {
+
+using Evidence = MissReason::Evidence;
+
+constexpr double kSameCost = 1.1;  // of an image, from flight to flight
+constexpr double kLeastChance = 0.05;
+constexpr SimTime kBeforeAnyProgram{std::chrono::milliseconds(50)};
+constexpr double kEmpty = 0.01;  // share of the battery's capacity
+
+struct Compared {
+  ConditionVerdict* verdict;
+  std::vector<const campaign::TrialResult*> flights;  ///< distinct; not empty
+  std::string label;
+
+  const std::optional<Pace>& pace() const { return verdict->pace; }
+};
+
+// Comparisons of conditions.
+
+bool have_same_sensors(const Compared& a, const Compared& b) {
+  const auto simulator = [](const Compared& one) {
+    const auto& versions = one.flights.front()->versions;
+    const auto found = versions.find("simulator");
+    return found == versions.end() ? "" : found->second;
+  };
+  return a.flights.front()->profiles == b.flights.front()->profiles && simulator(a) == simulator(b);
+}
+
+/// Records do not have all settings of a radio, which can differ between conditions.
+bool differ_in_speed_only(const Compared& a, const Compared& b) {
+  return a.pace() && b.pace() && !a.pace()->has_radio && !b.pace()->has_radio &&
+         have_same_sensors(a, b);
+}
+
+/// What an image costs under both or, without a camera, the largest stage of the first.
+std::optional<std::pair<double, double>> costs_s(const Pace& one, const Pace& other) {
+  if (!one.camera.empty() && one.camera == other.camera)
+    return std::pair(one.median_s, other.median_s);
+  if (one.stages.empty()) return std::nullopt;
+  const auto same =
+      std::ranges::find(other.stages, one.stages.front().stage, &timing::StageRow::stage);
+  if (same == other.stages.end()) return std::nullopt;
+  return std::pair(one.stages.front().median_s, same->median_s);
+}
+
+bool is_faster(const Compared& other, const Compared& missed) {
+  if (!differ_in_speed_only(other, missed) || other.pace()->speed == missed.pace()->speed)
+    return false;
+  const auto costs = costs_s(*missed.pace(), *other.pace());
+  return costs && costs->first > kSameCost * costs->second;
+}
+
+bool is_instant(const Compared& one) {
+  return one.pace() && one.pace()->speed.is_instant();
+}
+
+/// Whether chance does not explain that `a` reaches the goal more often. If the seeds change
+/// nothing, chance has no part.
+bool reaches_more_often(const ConditionVerdict& a, const ConditionVerdict& b) {
+  const auto is_certain = [](const ConditionVerdict& one) {
+    return one.is_one_flight() && one.flown > 1;
+  };
+  const campaign::Count of_a{a.distinct_reached, a.distinct}, of_b{b.distinct_reached, b.distinct};
+  if (of_a.of_them * of_b.all <= of_b.of_them * of_a.all) return false;
+  return (is_certain(a) && is_certain(b)) || campaign::fisher_exact(of_a, of_b) < kLeastChance;
+}
+
+bool costs_no_more(const Pace& image, const Pace& other) {
+  if (image.speed.is_scripted()) return true;
+  return !image.camera.empty() && image.camera == other.camera &&
+         image.median_s <= kSameCost * other.median_s && image.p95_s <= kSameCost * other.p95_s;
+}
+
+bool is_equally_fast_and_reaches(const Compared& other, const Compared& missed) {
+  return other.pace() && missed.pace() && is_sufficient(other.verdict->ruling) &&
+         other.pace()->speed == missed.pace()->speed && have_same_sensors(other, missed) &&
+         costs_no_more(*missed.pace(), *other.pace()) &&
+         reaches_more_often(*other.verdict, *missed.verdict);
+}
+
+// What happened in a flight.
+
+/// The clause on a task that the program never began, although all tasks before it reached their
+/// goals, and nothing else was missed; nullptr: there is none.
+const judge::ClauseVerdict* of_forgotten_task(const campaign::TrialResult& flight) {
+  const auto has_failed = [](const judge::TaskSpan& task) { return task.status != "reached"; };
+  const auto is_missed = [](const judge::ClauseVerdict& one) { return !one.met && one.margin; };
+  const auto is_beyond = [](const campaign::MetricValue& one) {
+    return one.value && !one.is_met();
+  };
+  if (flight.end != campaign::kEndFinished || std::ranges::any_of(flight.tasks, has_failed) ||
+      std::ranges::any_of(flight.clauses, is_missed) ||
+      std::ranges::any_of(flight.metrics, is_beyond))
+    return nullptr;
+  const auto found = std::ranges::find_if(
+      flight.clauses, [](const judge::ClauseVerdict& one) { return !one.met && !one.from; });
+  return found == flight.clauses.end() ? nullptr : &*found;
+}
+
+/// What has nothing to do with the speed of a computer; empty: not known.
+std::string known_cause(const campaign::TrialResult& flight, const std::optional<Pace>& pace) {
+  for (const Warning& warning : flight.warnings)
+    if (warning.consequence == Consequence::kDoubtfulStart)
+      return warning.subject + " " + warning.message;
+  for (const campaign::UavContacts& own : flight.contacts)
+    if (own.hard > 0 && own.hardest && own.hardest->at <= kBeforeAnyProgram)
+      return fmt::format("{} hits “{}” at ST {:.3f} s, before a program can act", own.uav,
+                         own.hardest->with, to_seconds(own.hardest->at));
+  for (const campaign::UavEnergy& energy : flight.energy)
+    if (flight.end == campaign::kEndBatteryEmpty && energy.charge_from < kEmpty)
+      return fmt::format("the battery of {} is at {:.2g} % at the start", energy.uav,
+                         100.0 * energy.charge_from);
+  if (const judge::ClauseVerdict* clause = of_forgotten_task(flight)) return clause->limited_by;
+  if (pace && pace->messages > 0 && pace->messages_arrived == 0)
+    return fmt::format("none of {} messages arrives", pace->messages);
+  return "";
+}
+
+/// A missed limit on a time that contains the computing of an image, which alone takes longer;
+/// empty: there is none.
+std::string limit_below_computing(const campaign::TrialResult& flight,
+                                  const std::optional<Pace>& pace) {
+  if (!pace || pace->camera.empty()) return "";
+  for (const judge::ClauseVerdict& clause : flight.clauses) {
+    if (clause.met || clause.quantiles.empty() || !clause.limit) continue;
+    const double unit_s = clause.unit == "ms" ? 1e-3 : 1.0;
+    const double median_s = unit_s * clause.quantiles[clause.quantiles.size() / 2];
+    const bool contains_computing = kSameCost * median_s >= pace->median_s;
+    if (contains_computing && pace->median_s > unit_s * *clause.limit) return clause.name;
+  }
+  return "";
+}
+
+/// What is so in each flight that missed the goal, as of the first one; empty: there is nothing.
+template <class Find>
+std::string in_each(const Compared& missed, const Find& find) {
+  std::string first;
+  for (const campaign::TrialResult* flight : missed.flights) {
+    if (flight->outcome != campaign::Outcome::kGoalMissed) continue;
+    const std::string found = find(*flight, missed.pace());
+    if (found.empty()) return "";
+    if (first.empty()) first = found;
+  }
+  return first;
+}
+
+// The reason.
+
+MissReason compared_with(Evidence evidence, const Compared& other, const Compared& missed) {
+  const ConditionVerdict& verdict = *other.verdict;
+  MissReason reason{evidence, "", other.label};
+  reason.other = is_sufficient(verdict.ruling) ? fmt::format("is {}", name(verdict.ruling))
+                                               : fmt::format("reaches it in {} of {} flights",
+                                                             verdict.reached, verdict.flown);
+  if (const auto costs = costs_s(*missed.pace(), *other.pace()))
+    std::tie(reason.own_s, reason.other_s) = *costs;
+  return reason;
+}
+
+MissReason reason_of(const Compared& missed, const std::vector<Compared>& all) {
+  std::vector<const Compared*> faster;
+  for (const Compared& other : all)
+    if (is_faster(other, missed)) faster.push_back(&other);
+  // The slowest first: the least that would do.
+  std::ranges::stable_sort(faster, std::greater<>{}, [&](const Compared* other) {
+    return costs_s(*missed.pace(), *other->pace())->second;
+  });
+  for (const Compared* other : faster)
+    if (reaches_more_often(*other->verdict, *missed.verdict))
+      return compared_with(Evidence::kFasterReaches, *other, missed);
+  if (const std::string cause = in_each(missed, known_cause); !cause.empty())
+    return {Evidence::kKnownCause, cause};
+  if (is_instant(missed)) return {Evidence::kInstant};
+  for (const Compared& other : all)
+    if (is_equally_fast_and_reaches(other, missed))
+      return {Evidence::kEquallyFastReaches, "", other.label};
+  if (const std::string limit = in_each(missed, limit_below_computing); !limit.empty())
+    return {.evidence = Evidence::kMissesOwnPace, .cause = limit, .own_s = missed.pace()->median_s};
+  const bool some_speed_suffices = std::ranges::any_of(all, [&](const Compared& other) {
+    return differ_in_speed_only(other, missed) && is_sufficient(other.verdict->ruling);
+  });
+  for (const Compared* other : faster) {
+    if (some_speed_suffices || !other->verdict->is_missed()) continue;
+    if (is_instant(*other)) return compared_with(Evidence::kInstantMissesToo, *other, missed);
+    if (other->pace()->keeps_up()) return compared_with(Evidence::kFasterMissesToo, *other, missed);
+  }
+  if (!faster.empty()) return compared_with(Evidence::kFasterUndecided, *faster.front(), missed);
+  return {};
+}
+
+Ruling ruling_on(Evidence evidence) {
+  if (evidence <= Evidence::kMissesOwnPace) return Ruling::kNotFastEnough;
+  return evidence <= Evidence::kFasterUndecided ? Ruling::kGoalMissed : Ruling::kOtherReason;
+}
+
+}  // namespace
+
+void explain_misses(std::span<const ToExplain> conditions) {
+  std::vector<Compared> all;
+  for (const ToExplain& one : conditions)
+    if (auto flights = campaign::distinct_flights(one.results->trials); !flights.empty())
+      all.push_back({one.verdict, std::move(flights), one.label});
+  for (const Compared& one : all)
+    if (one.verdict->is_missed()) one.verdict->miss = reason_of(one, all);
+  // Not earlier: each is compared with the rulings as they were.
+  for (const Compared& one : all)
+    if (one.verdict->miss) one.verdict->ruling = ruling_on(one.verdict->miss->evidence);
+}
+
+}  // namespace tether::report

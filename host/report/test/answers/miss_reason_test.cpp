@@ -1,0 +1,310 @@
+#include "sample_results.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <tether/report/verdict.h>
+
+namespace tether::report {
+namespace {
+
+using Evidence = MissReason::Evidence;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+/// Flights of one UAV under conditions that differ in what the tests set.
+class MissReasons : public testing::Test {
+ protected:
+  /// @return the index of the condition.
+  std::size_t add(const std::string& name, std::size_t reached, std::size_t missed, Pace pace) {
+    std::vector<double> times_s(reached, 4.0);
+    times_s.resize(reached + missed, 6.0);
+    scenario_.conditions.push_back(sample_results({{name, times_s}}).conditions[0]);
+    for (campaign::TrialResult& trial : scenario_.conditions.back().trials) {
+      trial.policy = "conservative_barrier";
+      trial.metrics[0].max = 5.0;
+      trial.profiles = {"paper_streaming"};
+      trial.versions["simulator"] = "MuJoCo";
+      trial.suts = {{.uav = "uav1", .sut = "s", .clock = "cpu", .reached_goal = true}};
+      if (!trial.metrics[0].is_met()) trial.outcome = campaign::Outcome::kGoalMissed;
+    }
+    paces_.emplace_back(std::move(pace));
+    return paces_.size() - 1;
+  }
+  Verdict verdict() const { return verdict_of(scenario_, paces_); }
+  Ruling ruling(std::size_t condition) const { return verdict().conditions[condition].ruling; }
+  std::vector<campaign::TrialResult>& trials(std::size_t condition) {
+    return scenario_.conditions[condition].trials;
+  }
+  Speed::Program& program(std::size_t condition) { return paces_[condition]->speed.programs[0]; }
+
+  /// A program that is measured: an image costs so much.
+  static Pace measured(double image_s) {
+    Pace pace{.uav = "uav1",
+              .stages = {{.stage = "detect", .count = 40, .share = 1.0}},
+              .camera = "camera",
+              .read_hz = 30.0,
+              .offered_hz = 30.0,
+              .median_s = image_s,
+              .p95_s = image_s};
+    pace.speed.programs = {{.uav = "uav1", .clock = "cpu"}};
+    pace.speed.machine = "here";
+    return pace;
+  }
+  static Pace scripted(Duration computing) {
+    Pace pace = measured(to_seconds(computing));
+    pace.speed.programs = {{.uav = "uav1", .clock = "scripted", .computing = computing}};
+    pace.speed.machine.clear();
+    return pace;
+  }
+  static Pace instant() { return scripted(std::chrono::microseconds(1)); }
+
+  campaign::ScenarioResults scenario_;
+  std::vector<std::optional<Pace>> paces_;
+};
+
+TEST_F(MissReasons, AreNotKnownWithoutAReference) {
+  const std::size_t board = add("board", 0, 5, measured(0.2));
+  EXPECT_EQ(ruling(board), Ruling::kGoalMissed);
+  EXPECT_THAT(
+      verdict_text({verdict()}, Markup::kPlain),
+      testing::AllOf(
+          StartsWith("Goal missed: on “board” 5 of 5 flights miss the goal (missed: time "
+                     "required ≤ 5 s (5 flights))"),
+          HasSubstr("No faster condition was flown, so whether speed matters is not known."),
+          HasSubstr("To see whether speed matters, fly on a faster computer")));
+  paces_[board].reset();
+  EXPECT_EQ(ruling(board), Ruling::kGoalMissed);
+}
+
+TEST_F(MissReasons, AreSpeedIfAFasterConditionReachesTheGoal) {
+  const std::size_t board = add("board", 0, 5, measured(0.2));
+  const std::size_t host = add("host", 5, 0, measured(0.02));
+  program(board).cpu_factor = 10.0;
+  EXPECT_EQ(ruling(board), Ruling::kNotFastEnough);
+  EXPECT_EQ(verdict().conditions[board].miss->evidence, Evidence::kFasterReaches);
+  EXPECT_THAT(answers_of({verdict()})[0].rest,
+              testing::EndsWith("“host” is fast enough so far: an image costs 20 ms instead of 200 "
+                                "ms, 10.0 × less."));
+  const auto expect_unknown = [&](const char* what) {
+    EXPECT_EQ(ruling(board), Ruling::kGoalMissed) << what;
+  };
+  trials(host)[0].profiles = {"late"};
+  expect_unknown("other sensors");
+  trials(host)[0].profiles = trials(board)[0].profiles;
+  trials(host)[0].versions["simulator"] = "Gazebo";
+  expect_unknown("another simulator");
+  trials(host)[0].versions["simulator"] = "MuJoCo";
+  paces_[host]->has_radio = paces_[board]->has_radio = true;
+  expect_unknown("a radio, which may be another one");
+  paces_[host]->has_radio = paces_[board]->has_radio = false;
+  paces_[host]->median_s = 0.3;
+  expect_unknown("not faster");
+}
+
+// 2 of 2 against 0 of 2 is chance, unless all flights of each are one.
+TEST_F(MissReasons, NeedMoreThanChance) {
+  const std::size_t board = add("board", 0, 2, measured(0.2));
+  const std::size_t host = add("host", 2, 0, measured(0.02));
+  program(board).cpu_factor = 10.0;
+  EXPECT_EQ(ruling(board), Ruling::kUndecided) << "of so few flights";
+  for (const std::size_t condition : {board, host})
+    for (campaign::TrialResult& trial : trials(condition)) trial.flight_digest = "same";
+  EXPECT_EQ(ruling(board), Ruling::kNotFastEnough);
+}
+
+TEST_F(MissReasons, AreSpeedIfComputingAloneTakesLongerThanALimit) {
+  const std::size_t board = add("board", 0, 1, measured(0.2));
+  trials(board)[0].clauses = {{.uav = "uav1",
+                               .name = "quick",
+                               .margin = -60.0,
+                               .unit = "ms",
+                               .quantiles = {190.0, 210.0, 230.0},
+                               .limit = 150.0}};
+  EXPECT_EQ(ruling(board), Ruling::kNotFastEnough);
+  EXPECT_THAT(verdict_text({verdict()}, Markup::kPlain),
+              testing::AllOf(StartsWith("Not fast enough in this flight: "),
+                             HasSubstr("Computing an image takes 200 ms, longer than “quick” "
+                                       "allows.")));
+  trials(board)[0].clauses[0].limit = 205.0;
+  EXPECT_EQ(ruling(board), Ruling::kGoalMissed) << "sensors and waiting take the rest";
+  trials(board)[0].clauses[0].limit = 15.0;
+  trials(board)[0].clauses[0].quantiles = {0.0, 20.0, 40.0};
+  EXPECT_EQ(ruling(board), Ruling::kGoalMissed) << "a jitter does not contain the computing";
+}
+
+TEST_F(MissReasons, AreKnownOfWhatHasNothingToDoWithSpeed) {
+  struct Cause {
+    const char* text;
+    void (*plant)(campaign::TrialResult&, Pace&);
+  };
+  for (const Cause& cause :
+       {Cause{"UAV 'uav1' starts in the floor",
+              [](campaign::TrialResult&trial, Pace&) {
+                trial.warnings = {
+                    {Consequence::kDoubtfulStart, {}, "UAV 'uav1'", "starts in the floor"}};
+              }},
+        {"uav1 hits “floor” at ST 0.000 s, before a program can act",
+         [](campaign::TrialResult&trial, Pace&) {
+           trial.contacts = {{.uav = "uav1", .count = 1, .hard = 1}};
+           trial.contacts[0].hardest = record::Contact{.uav = "uav1", .at = {}, .with = "floor"};
+         }},
+        {"the battery of uav1 is at 0.01 % at the start",
+         [](campaign::TrialResult&trial, Pace&) {
+           trial.end = campaign::kEndBatteryEmpty;
+           trial.energy = {{.uav = "uav1", .charge_from = 1e-4}};
+         }},
+        {"the task 'look' did not run",
+         [](campaign::TrialResult&trial, Pace&) {
+           trial.end = campaign::kEndFinished;
+           trial.metrics.clear();
+           trial.clauses = {
+               {.uav = "uav1", .name = "near", .limited_by = "the task 'look' did not run"}};
+         }},
+        {"none of 7 messages arrives",
+         [](campaign::TrialResult&, Pace&pace) { pace.messages = 7; }}}) {
+    scenario_ = {};
+    paces_.clear();
+    add("board", 0, 1, measured(0.2));
+    cause.plant(trials(0)[0], *paces_[0]);
+    EXPECT_EQ(ruling(0), Ruling::kOtherReason) << cause.text;
+    EXPECT_THAT(verdict_text({verdict()}, Markup::kPlain),
+                testing::AllOf(StartsWith("Goal missed; speed is probably not the reason: "),
+                               HasSubstr(std::string("The reason: ") + cause.text + ".")));
+  }
+}
+
+// A program that ends its mission because a task was late does not run the next one.
+TEST_F(MissReasons, AreNotTheTaskThatDidNotRunIfOneBeforeItWasLate) {
+  add("board", 0, 1, measured(0.2));
+  campaign::TrialResult& trial = trials(0)[0];
+  trial.end = campaign::kEndFinished;
+  trial.metrics.clear();
+  trial.clauses = {{.uav = "uav1", .name = "near", .limited_by = "the task 'look' did not run"},
+                   {.uav = "uav1", .name = "soon", .margin = -1.0, .deadline = SimTime{}}};
+  EXPECT_EQ(ruling(0), Ruling::kGoalMissed);
+  trial.clauses.pop_back();
+  trial.tasks = {{.uav = "uav1", .task = "search", .status = "not_reached"}};
+  EXPECT_EQ(ruling(0), Ruling::kGoalMissed);
+}
+
+TEST_F(MissReasons, AreProbablyNotSpeedIfAFasterProgramThatReadsEveryImageMissesToo) {
+  const std::size_t board = add("board", 0, 5, measured(0.2));
+  const std::size_t host = add("host", 0, 5, measured(0.02));
+  program(board).cpu_factor = 10.0;
+  EXPECT_EQ(ruling(board), Ruling::kOtherReason);
+  EXPECT_EQ(verdict().conditions[board].miss->evidence, Evidence::kFasterMissesToo);
+  EXPECT_EQ(ruling(host), Ruling::kGoalMissed);
+  paces_[host]->read_hz = 9.0;
+  EXPECT_EQ(ruling(board), Ruling::kGoalMissed) << "both may be too slow";
+}
+
+TEST_F(MissReasons, ExcludeTheComputerIfComputingTakesNoTime) {
+  add("instant", 0, 5, instant());
+  const Verdict alone = verdict();
+  EXPECT_EQ(alone.conditions[0].ruling, Ruling::kOtherReason);
+  EXPECT_EQ(alone.conditions[0].miss->evidence, Evidence::kInstant);
+  EXPECT_THAT(verdict_text({alone}, Markup::kPlain),
+              StartsWith("Goal missed; speed is probably not the reason: on “instant” 5 of 5 "
+                         "flights miss the goal (missed: time required ≤ 5 s (5 flights))"));
+  EXPECT_THAT(advice_of({alone}),
+              ElementsAre("Look for the reason in the program, the scenario and its limits."));
+  paces_[0] = scripted(std::chrono::milliseconds(1));
+  EXPECT_EQ(ruling(0), Ruling::kGoalMissed) << "that is time";
+}
+
+TEST_F(MissReasons, ExcludeTheComputerIfTheGoalIsMissedWithoutComputingToo) {
+  const std::size_t board = add("board", 0, 5, measured(0.02));
+  const std::size_t reference = add("instant", 1, 9, instant());
+  EXPECT_EQ(ruling(board), Ruling::kOtherReason);
+  EXPECT_EQ(verdict().conditions[board].miss->evidence, Evidence::kInstantMissesToo);
+  EXPECT_THAT(answers_of({verdict()})[0].rest,
+              HasSubstr("“instant” misses it too, although computing takes no time there."));
+  trials(reference)[0].profiles = {"late"};
+  EXPECT_EQ(ruling(board), Ruling::kGoalMissed) << "other sensors";
+}
+
+// Between the two, some speed suffices.
+TEST_F(MissReasons, LeaveItOpenIfAnotherSpeedSuffices) {
+  const std::size_t board = add("board", 0, 5, measured(0.2));
+  add("instant", 0, 5, instant());
+  add("host", 5, 0, measured(0.02));
+  program(board).cpu_factor = 10.0;
+  EXPECT_EQ(ruling(board), Ruling::kNotFastEnough);
+}
+
+TEST_F(MissReasons, ExcludeTheComputerIfItReachesTheGoalUnderAnotherCondition) {
+  const std::size_t poor = add("poor radio", 0, 5, scripted(std::chrono::milliseconds(10)));
+  const std::size_t good = add("fast board", 5, 0, scripted(std::chrono::milliseconds(10)));
+  const std::size_t slow = add("slow board", 0, 5, scripted(std::chrono::milliseconds(700)));
+  EXPECT_EQ(ruling(poor), Ruling::kOtherReason);
+  EXPECT_EQ(ruling(good), Ruling::kFastEnoughSoFar);
+  EXPECT_EQ(ruling(slow), Ruling::kNotFastEnough);
+  EXPECT_EQ(verdict().lead, slow);
+  EXPECT_THAT(answers_of({verdict()})[1].rest,
+              HasSubstr("“fast board” has the same computer and sensors, and reaches it."));
+  EXPECT_EQ(rulings_table({verdict()}).rows[poor][1], "goal missed, probably not for speed");
+
+  scenario_.conditions.pop_back();
+  paces_.pop_back();
+  EXPECT_THAT(advice_of({verdict()}), ElementsAre("Look for the reason in what differs from “fast "
+                                                  "board”, such as the radio."));
+}
+
+TEST_F(MissReasons, CompareOnlyWhatIsEquallyFast) {
+  const std::size_t poor = add("poor radio", 0, 5, measured(0.02));
+  const std::size_t good = add("good radio", 5, 0, measured(0.02));
+  ASSERT_EQ(ruling(poor), Ruling::kOtherReason);
+  const Pace before = *paces_[poor];
+  const auto expect_not = [&](const char* what) {
+    EXPECT_EQ(ruling(poor), Ruling::kGoalMissed) << what;
+    paces_[poor] = before;
+  };
+  program(poor).cpu_factor = 6.0;
+  expect_not("a slower computer");
+  program(poor).board = "shared";
+  expect_not("a shared board");
+  paces_[poor]->speed.machine = "there";
+  expect_not("another machine");
+  paces_[poor]->speed.target = "pi ssh://pi";
+  expect_not("another target");
+  paces_[poor]->p95_s = 0.03;
+  expect_not("images that cost more");
+  paces_[poor]->camera.clear();
+  expect_not("unknown costs");
+  trials(poor)[0].profiles.clear();
+  expect_not("other sensors");
+  trials(poor)[0].profiles = trials(good)[0].profiles;
+  EXPECT_EQ(ruling(poor), Ruling::kOtherReason);
+}
+
+// Which says nothing of sensors and simulator.
+TEST_F(MissReasons, DoNotRestOnAFlightThatFailed) {
+  const std::size_t board = add("board", 0, 6, measured(0.02));
+  const std::size_t reference = add("instant", 0, 6, instant());
+  trials(reference)[1].versions["simulator"] = "Gazebo";
+  for (const std::size_t condition : {board, reference}) {
+    campaign::invalidate(trials(condition)[0], "no port");
+    trials(condition)[0].versions.clear();
+  }
+  EXPECT_EQ(ruling(board), Ruling::kGoalMissed);
+}
+
+// With so few flights, chance explains the difference.
+TEST_F(MissReasons, DoNotBuildOnChance) {
+  const std::size_t poor = add("poor radio", 0, 1, measured(0.02));
+  add("good radio", 2, 0, measured(0.02));
+  EXPECT_EQ(ruling(poor), Ruling::kGoalMissed);
+}
+
+TEST_F(MissReasons, AreNotSoughtWhereTheFlightsLeaveItOpen) {
+  const std::size_t poor = add("poor radio", 7, 3, measured(0.02));
+  add("good radio", 36, 0, measured(0.02));
+  EXPECT_EQ(ruling(poor), Ruling::kUndecided);
+  const std::size_t none = add("not flown", 0, 0, measured(0.02));
+  EXPECT_EQ(ruling(none), Ruling::kUndecided);
+}
+
+}  // namespace
+}  // namespace tether::report

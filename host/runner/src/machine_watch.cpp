@@ -1,0 +1,99 @@
+#include "machine_watch.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+
+#include <tether/board/target_readings.h>
+#include <tether/os/clock.h>
+#include <tether/os/process_table.h>
+
+namespace tether::runner {
+
+namespace {
+
+// The median of so many tells what is usual, whatever interrupts a few.
+constexpr std::size_t kBlocks = 15;
+// As well as the factor of a target is known.
+constexpr double kUneven = 0.1;
+// What a desktop or the services of a server take is less.
+constexpr double kBusy = 0.1;
+
+constexpr std::size_t kWords = 1u << 16;
+
+/// About 1 ms of integer and floating-point arithmetic on 512 KiB, which a neighbour's work can
+/// displace from the second cache.
+void compute_block(std::vector<std::uint64_t>& words) {
+  std::uint64_t state = 1;
+  double sum = 0.0;
+  for (std::size_t i = 0; i < 6 * kWords; ++i) {
+    state = state * 6'364'136'223'846'793'005u + 1'442'695'040'888'963'407u;
+    std::uint64_t& word = words[(state >> 33) % kWords];
+    word = (word ^ state) + i;
+    sum = sum * 0.5 + static_cast<double>(word >> 12);
+  }
+  words[0] += static_cast<std::uint64_t>(sum) & 1u;
+}
+
+std::vector<Duration> times_of_blocks(const MachineReader& reader) {
+  reader.time_block();  // the first one fills the caches
+  std::vector<Duration> times(kBlocks);
+  for (Duration& time : times) time = reader.time_block();
+  std::ranges::sort(times);
+  return times;
+}
+
+Duration median(const std::vector<Duration>& sorted) {
+  return sorted[sorted.size() / 2];
+}
+
+}  // namespace
+
+MachineReader machine_reader(clockid_t clock) {
+  return {.time_block =
+              [clock, words = std::vector<std::uint64_t>(kWords)]() mutable {
+                const Duration begin = os::read_clock(clock);
+                compute_block(words);
+                return os::read_clock(clock) - begin;
+              },
+          .processors = os::processor_time,
+          .own = os::used_with_descendants};
+}
+
+MachineWatch::MachineWatch(MachineReader reader)
+    : reader_(std::move(reader)),
+      before_(times_of_blocks(reader_)),
+      processors_(reader_.processors()),
+      own_(reader_.own()) {}
+
+void MachineWatch::end_of_run() {
+  const auto now = reader_.processors();
+  const Duration own = reader_.own() - own_;
+  if (!now || !processors_) return;
+  const Duration taken = (now->used - processors_->used) + (now->stolen - processors_->stolen);
+  const Duration all = taken + (now->idle - processors_->idle);
+  if (all > Duration(0)) others_ = std::max(0.0, to_seconds(taken - own) / to_seconds(all));
+}
+
+campaign::MachineLoad MachineWatch::load(bool knows_programs) {
+  const std::vector<Duration> after = times_of_blocks(reader_);
+  const Duration shortest = std::min(before_.front(), after.front());
+  const Duration longest = std::max(median(before_), median(after));
+  return {.machine = "host",
+          .block_spread = to_seconds(longest) / to_seconds(std::max(shortest, Duration(1))) - 1.0,
+          .others = knows_programs ? others_ : 0.0};
+}
+
+std::optional<campaign::MachineLoad> load_of_board(const campaign::TargetReport& target) {
+  const auto share = board::contended_share(target.before, target.after);
+  if (target.address.empty() || !share) return std::nullopt;
+  return campaign::MachineLoad{.machine = target.name, .block_spread = 0.0, .others = *share};
+}
+
+std::optional<campaign::Doubt> doubt_of(const campaign::MachineLoad& load) {
+  if (load.block_spread <= kUneven && load.others <= kBusy) return std::nullopt;
+  return campaign::Doubt{campaign::Doubt::Kind::kBusyMachine, load.machine,
+                         std::max(load.block_spread, load.others)};
+}
+
+}  // namespace tether::runner

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <ctime>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include <tether/campaign/result.h>
+#include <tether/os/machine.h>
+
+namespace tether::runner {
+
+/// What the watch reads of this machine.
+struct MachineReader {
+  std::function<Duration()> time_block;  ///< how long a fixed block of work takes
+  std::function<std::optional<os::ProcessorTime>()> processors;
+  std::function<Duration()> own;  ///< CPU time of this process and its descendants
+};
+/// Of this machine. `clock`: in whose time a block is measured.
+MachineReader machine_reader(clockid_t clock);
+
+/// Watches how busy this machine is during a run, from the outside: what it measures before and
+/// after the run takes 50 ms, and it takes nothing in between. Not thread-safe.
+class MachineWatch {
+ public:
+  /// Before the SUTs are started. Measures.
+  explicit MachineWatch(MachineReader reader);
+  /// At the end of the run, while its processes still exist.
+  void end_of_run();
+  /// After they have ended. Measures. `knows_programs`: false if the user started programs of the
+  /// run, which could not be told from others.
+  campaign::MachineLoad load(bool knows_programs);
+
+ private:
+  MachineReader reader_;
+  std::vector<Duration> before_;
+  std::optional<os::ProcessorTime> processors_;
+  Duration own_{0};
+  double others_ = 0.0;
+};
+
+/// Of a board, from its readings. None: this is the host, or the board does not tell.
+std::optional<campaign::MachineLoad> load_of_board(const campaign::TargetReport& target);
+
+/// None: the machine was idle and even enough.
+std::optional<campaign::Doubt> doubt_of(const campaign::MachineLoad& load);
+
+}  // namespace tether::runner

@@ -1,0 +1,90 @@
+#include "machine_watch.h"
+
+#include <gtest/gtest.h>
+
+namespace tether::runner {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// A machine of two processors whose readings the test sets.
+class Machine : public testing::Test {
+ protected:
+  campaign::MachineLoad load(bool knows_programs = true) {
+    before_ = true;
+    MachineWatch watch({.time_block = [this] { return block(); },
+                        .processors = [this] { return std::optional(processors_); },
+                        .own = [this] { return own_; }});
+    before_ = false;
+    own_ += own_in_run_;
+    processors_.used += own_in_run_ + others_in_run_;
+    processors_.stolen += stolen_in_run_;
+    processors_.idle += 20s - own_in_run_ - others_in_run_ - stolen_in_run_;
+    watch.end_of_run();
+    own_ += 1s;  // of measuring
+    processors_.used += 1s;
+    return watch.load(knows_programs);
+  }
+  Duration block() {
+    ++blocks_;
+    if (blocks_ % 5 == 0) return 20 * block_before_;  // an interrupt
+    return before_ ? block_before_ : block_after_;
+  }
+
+  os::ProcessorTime processors_{.used = 100h, .stolen = 1h, .idle = 300h};
+  Duration own_ = 3s, own_in_run_ = 12s, others_in_run_{0}, stolen_in_run_{0};
+  Duration block_before_ = 1000us, block_after_ = 1000us;
+  int blocks_ = 0;
+  bool before_ = true;
+};
+
+TEST_F(Machine, IsIdleAndEvenWhateverTheRunItselfComputes) {
+  const auto idle = load();
+  EXPECT_EQ(idle, (campaign::MachineLoad{"host", 0.0, 0.0}));
+  EXPECT_FALSE(doubt_of(idle));
+}
+
+TEST_F(Machine, IsBusyIfOthersTakeATenthOfIt) {
+  others_in_run_ = 1900ms;
+  EXPECT_NEAR(load().others, 0.095, 1e-9);
+  EXPECT_FALSE(doubt_of(load()));
+  stolen_in_run_ = 200ms;
+  const auto busy = load();
+  EXPECT_NEAR(busy.others, 0.105, 1e-9);
+  ASSERT_TRUE(doubt_of(busy));
+  EXPECT_EQ(doubt_of(busy)->kind, campaign::Doubt::Kind::kBusyMachine);
+  EXPECT_EQ(doubt_of(busy)->subject, "host");
+  EXPECT_NEAR(doubt_of(busy)->amount, 0.105, 1e-9);
+  EXPECT_EQ(load(false).others, 0.0);
+}
+
+TEST_F(Machine, IsUnevenIfABlockTakesATenthLongerAtOneEnd) {
+  block_after_ = 1090us;
+  EXPECT_FALSE(doubt_of(load()));
+  block_before_ = 1300us;
+  const auto uneven = load();
+  EXPECT_NEAR(uneven.block_spread, 1300.0 / 1090.0 - 1.0, 1e-9);
+  EXPECT_NEAR(doubt_of(uneven)->amount, uneven.block_spread, 1e-9);
+}
+
+TEST(BoardLoad, IsReadFromItsReadings) {
+  campaign::TargetReport target{.name = "pi",
+                                .address = "ssh://pi",
+                                .before = {{"uptime_s", "10"}, {"cpu_wait_us", "0"}},
+                                .after = {{"uptime_s", "20"}, {"cpu_wait_us", "1500000"}}};
+  EXPECT_EQ(load_of_board(target), (campaign::MachineLoad{"pi", 0.0, 0.15}));
+  target.address = "";
+  EXPECT_FALSE(load_of_board(target));
+}
+
+TEST_F(Machine, IsReadInTheTimeOfTheClock) {
+  for (const clockid_t clock : {CLOCK_THREAD_CPUTIME_ID, CLOCK_MONOTONIC}) {
+    const MachineReader reader = machine_reader(clock);
+    EXPECT_GT(reader.time_block(), 50us);
+    EXPECT_TRUE(reader.processors());
+    EXPECT_GT(reader.own(), 0s);
+  }
+}
+
+}  // namespace
+}  // namespace tether::runner

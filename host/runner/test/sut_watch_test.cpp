@@ -1,0 +1,53 @@
+#include "sut_watch.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace tether::runner {
+namespace {
+
+using campaign::Doubt;
+using coordinator::ClockSetting;
+using coordinator::SutLooks;
+using link::ClockKind;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+coordinator::SutReport report(Duration et, SutLooks looks) {
+  return {.uav = "uav1", .sut = {}, .finish = {}, .et = ExecTime(et), .looks = looks};
+}
+
+TEST(SutWatch, DoubtsWaitingOfMoreThanAHundredthOfTheFlight) {
+  for (const ClockKind kind : {ClockKind::kCpu, ClockKind::kScripted, ClockKind::kCounted}) {
+    const ClockSetting clock{kind};
+    EXPECT_THAT(doubts_of(report(seconds(9), {.waiting = milliseconds(90)}), clock), IsEmpty());
+    EXPECT_THAT(doubts_of(report(seconds(9), {.waiting = milliseconds(92)}), clock),
+                ElementsAre(Doubt{Doubt::Kind::kUnseenWait, "uav1", 0.092}));
+    EXPECT_THAT(doubts_of(report(milliseconds(19), {.waiting = milliseconds(20)}), clock),
+                IsEmpty());
+    EXPECT_THAT(doubts_of(report(milliseconds(19), {.waiting = seconds(5)}), clock),
+                ElementsAre(Doubt{Doubt::Kind::kUnseenWait, "uav1", 5.0}));
+  }
+}
+
+TEST(SutWatch, DoubtsNoWaitingThatAReplayedWallTimeHas) {
+  const auto sut = report(seconds(9), {.waiting = seconds(5)});
+  EXPECT_THAT(doubts_of(sut, {ClockKind::kReplayed}, true), IsEmpty());
+  EXPECT_EQ(doubts_of(sut, {ClockKind::kReplayed}, false).size(), 1u);
+}
+
+// Of 40 ms at two threads, the CPU clock makes 80 ms × 6.
+TEST(SutWatch, DoubtsThreadsWhoseTimesACpuClockAddsUp) {
+  const SutLooks looks{.computing = milliseconds(40), .of_all_threads = milliseconds(80)};
+  const auto sut = report(milliseconds(468), looks);
+  EXPECT_THAT(doubts_of(sut, {ClockKind::kCpu, 6.0}),
+              ElementsAre(Doubt{Doubt::Kind::kParallelThreads, "uav1", 2.0}));
+  EXPECT_THAT(doubts_of(sut, {ClockKind::kScripted}), IsEmpty());
+  const SutLooks hardly{.computing = seconds(1), .of_all_threads = milliseconds(1009)};
+  EXPECT_THAT(doubts_of(report(seconds(1), hardly), {ClockKind::kCpu}), IsEmpty());
+}
+
+}  // namespace
+}  // namespace tether::runner
