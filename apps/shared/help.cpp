@@ -24,8 +24,10 @@ class Format : public CLI::Formatter {
     std::string text = option->get_description();
     if (!value.range.empty())
       text += (value.is_whole ? ". A whole number from " : ". A number from ") + value.range;
-    if (const std::string preset = option->get_default_str(); !preset.empty())
-      text += " [" + preset + "]";
+    std::string preset = option->get_default_str();
+    if (value.word == "true|false")
+      preset = preset == "0" ? "false" : preset == "1" ? "true" : preset;
+    if (!preset.empty()) text += " [" + preset + "]";
     return entry(name, text);
   }
   std::string make_subcommand(const CLI::App* command) const override {
