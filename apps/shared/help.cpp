@@ -13,7 +13,7 @@ namespace {
 
 class Format : public CLI::Formatter {
  public:
-  explicit Format(std::size_t columns) : columns_(columns) {}
+  explicit Format(std::size_t columns) : columns_(columns) { label("Positionals", "Arguments"); }
 
   std::string make_option(const CLI::Option* option, bool is_positional) const override {
     const Value value = value_of(*option);
@@ -24,8 +24,10 @@ class Format : public CLI::Formatter {
     std::string text = option->get_description();
     if (!value.range.empty())
       text += (value.is_whole ? ". A whole number from " : ". A number from ") + value.range;
-    if (const std::string preset = option->get_default_str(); !preset.empty())
-      text += " [" + preset + "]";
+    std::string preset = option->get_default_str();
+    if (value.word == "true|false")
+      preset = preset == "0" ? "false" : preset == "1" ? "true" : preset;
+    if (!preset.empty()) text += " [" + preset + "]";
     return entry(name, text);
   }
   std::string make_subcommand(const CLI::App* command) const override {
@@ -35,7 +37,13 @@ class Format : public CLI::Formatter {
     return wrapped(app->get_description() + "\n", columns_);
   }
   std::string make_footer(const CLI::App* app) const override {
-    return wrapped(app->get_footer() + "\n", columns_);
+    std::string text = app->get_footer() + "\n";
+    // Where a paragraph is broken in the source says nothing: only blanks begin a line of its own.
+    for (std::size_t i = 1; i + 1 < text.size(); ++i)
+      if (text[i] == '\n' && text[i - 1] != '\n' && text[i - 1] != ':' && text[i + 1] != '\n' &&
+          text[i + 1] != ' ')
+        text[i] = ' ';
+    return wrapped(text, columns_);
   }
 
  private:

@@ -1,8 +1,27 @@
 #include "shared/value.h"
 
 #include <sstream>
+#include <string_view>
+#include <utility>
 
 namespace tether::app {
+
+namespace {
+
+/// Names of options end with the unit of their number.
+constexpr std::pair<std::string_view, const char*> kUnits[] = {
+    {"-deg-s", "DEG/S"}, {"-rad-s", "RAD/S"}, {"-m-s", "M/S"},  {"-deg", "DEG"}, {"-px", "PX"},
+    {"-ms", "MS"},       {"-s", "SECONDS"},   {"-m", "METRES"}, {"-hz", "HZ"},
+};
+
+std::string unit_of(const CLI::Option& option) {
+  if (option.get_lnames().empty()) return "NUMBER";
+  for (const auto& [end, unit] : kUnits)
+    if (option.get_lnames().front().ends_with(end)) return unit;
+  return "NUMBER";
+}
+
+}  // namespace
 
 Value value_of(const CLI::Option& option) {
   // The name of the type, then after ":" what its checks say: `within`, or CLI::IsMember.
@@ -11,9 +30,10 @@ Value value_of(const CLI::Option& option) {
   Value value{.word = type.substr(0, colon)};
   const std::string checks = colon == std::string::npos ? "" : type.substr(colon + 1);
   value.is_whole = value.word == "UINT" || value.word == "INT";
-  if (value.is_whole || value.word == "FLOAT") value.word = "NUMBER";
+  if (value.is_whole || value.word == "FLOAT") value.word = unit_of(option);
+  if (value.word == "BOOLEAN") value.word = "true|false";
   if (!checks.starts_with('{')) {
-    value.range = checks;
+    for (const char c : checks) value.range += c == ':' ? std::string(", ") : std::string(1, c);
     return value;
   }
   std::istringstream choices(checks.substr(1, checks.find('}') - 1));

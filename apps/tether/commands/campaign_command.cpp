@@ -7,6 +7,7 @@
 #include "options/trial_options.h"
 #include "reading/file_kind.h"
 #include "reading/world_options.h"
+#include "terminal/print.h"
 #include "terminal/print_report.h"
 #include "terminal/progress_bar.h"
 #include "terminal/say.h"
@@ -141,7 +142,7 @@ int run_trials(const CampaignOptions& given, const std::stop_token& stop) {
   sim::WorldStore worlds;
   const auto [files, warnings] = runner::files_of_trials(campaign, find_back_end, worlds);
   if (!warnings.empty())
-    say("{}\n", summary_of(warnings, std::string(runner::kWarningsFile) + " of each trial"));
+    complain(summary_of(warnings, std::string(runner::kWarningsFile) + " of each trial"));
   runner::TrialServers servers;
   if (!cluster) servers.start(jobs, trial_service(worlds));
   campaign::Settings versions = versions_of(campaign, options.reading);
@@ -150,7 +151,7 @@ int run_trials(const CampaignOptions& given, const std::stop_token& stop) {
   const campaign::CampaignFolder folder(
       out, campaign, settings,
       options.resume ? campaign::OpenMode::kResume : campaign::OpenMode::kFresh);
-  for (const std::string& warning : folder.warnings()) say("warning: {}\n", warning);
+  for (const std::string& warning : folder.warnings()) complain("warning: " + warning);
 
   campaign::CampaignOutcome outcome;
   if (cluster) {

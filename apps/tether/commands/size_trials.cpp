@@ -105,7 +105,7 @@ std::vector<std::filesystem::path> SizeTrials::checked_files() {
   sim::WorldStore worlds;
   const auto [files, warnings] = runner::files_of_trials(campaign_, find_back_end, worlds);
   if (!warnings.empty())
-    say("{}\n", summary_of(warnings, std::string(runner::kWarningsFile) + " of each flight"));
+    complain(summary_of(warnings, std::string(runner::kWarningsFile) + " of each flight"));
   if (!options_.cluster.uses_workers()) servers_.start(jobs_, trial_service(worlds));
   return files;
 }

@@ -246,7 +246,8 @@ void add_size_command(CLI::App& program, Action& action) {
       ->add_option("--between", options->between,
                    "Slowdowns [1,40], or numbers of UAVs [1, all], to fly: LEAST,MOST")
       ->delimiter(',')
-      ->expected(2);
+      ->expected(2)
+      ->type_name("LEAST,MOST");
   command->add_option("--max-trials", options->max_trials, "Maximum number of flights")
       ->check(within(1.0, 10000.0))
       ->capture_default_str();

@@ -1,5 +1,6 @@
 #include "terminal/status_line.h"
 
+#include "terminal/print.h"
 #include "terminal/say.h"
 
 #include <cstdio>
@@ -41,7 +42,7 @@ void StatusLine::clear() {
 
 void StatusLine::print(const std::string& line) {
   clear();
-  say("{}\n", line);
+  complain(line);
 }
 
 void StatusLine::show(const coordinator::RunStatus& status) {

@@ -22,6 +22,8 @@ class Help : public testing::Test {
         .add_option("--format", text_,
                     "The form of what is written to the standard output, or to a file")
         ->check(CLI::IsMember({"text", "html"}));
+    program_.add_option("--yaw-rate-deg-s", limit_, "Rate");
+    program_.add_option("--clockwise", flag_, "Direction")->capture_default_str();
     program_.add_flag("--force", flag_, "Replace");
   }
   std::string at(std::size_t columns) {
@@ -41,7 +43,8 @@ TEST_F(Help, HasTheRangeAndTheDefaultOfANumberAndTheChoices) {
   for (const char* line :
        {"\n  --jobs NUMBER           Parallel trials. A whole number from 1 to 8 [2]\n",
         "\n  --limit PERCENT         The most. A number from 0 to 1000000\n",
-        "\n  --format text|html      The form of what", "\n  --force                 Replace\n"})
+        "\n  --format text|html      The form of what", "\n  --yaw-rate-deg-s DEG/S  Rate\n",
+        "\n  --clockwise true|false  Direction [false]\n", "\n  --force                 Replace\n"})
     EXPECT_NE(help.find(line), std::string::npos) << line << help;
 }
 

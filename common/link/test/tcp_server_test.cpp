@@ -62,7 +62,7 @@ TEST_F(TcpServer, DeliversMessagesInOrderAndReportsTheEnd) {
 
 TEST_F(TcpServer, RefusesBadInputAndServesOthers) {
   const std::string zero_length(4, '\0'), too_long("\x01\x00\x10\x00", 4);
-  const std::string longer_than_a_hello("\x01\x10\x00\x00", 4);
+  const std::string longer_than_a_hello("\x01\x80\x00\x00", 4);
   const std::string damaged = std::string("\x40\x00\x00\x00", 4) + std::string(64, '\x5a');
   const auto refuse = [this](const std::string& input, bool is_greeted) {
     SCOPED_TRACE(testing::PrintToString(input) + (is_greeted ? " of a greeted peer" : ""));

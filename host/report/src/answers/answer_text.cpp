@@ -12,13 +12,16 @@ namespace tether::report {
 
 namespace {
 
-/// Around the lead of an answer: bold, and on a terminal green, red or yellow by its ruling.
+/// Around the lead of an answer: bold, and on a terminal green, red or yellow by its ruling, if it has one.
 std::pair<std::string, std::string> marks_of(std::optional<Ruling> ruling, Markup markup) {
   if (markup == Markup::kPlain) return {};
   if (markup == Markup::kMarkdown) return {"**", "**"};
   const bool is_good = ruling == Ruling::kFastEnough || ruling == Ruling::kFastEnoughSoFar;
-  const char* const colour = is_good ? "32" : ruling == Ruling::kNotFastEnough ? "31" : "33";
-  return {fmt::format("\x1b[1;{}m", colour), "\x1b[0m"};
+  const char* const colour = !ruling                            ? ""
+                             : is_good                          ? ";32"
+                             : ruling == Ruling::kNotFastEnough ? ";31"
+                                                                : ";33";
+  return {fmt::format("\x1b[1{}m", colour), "\x1b[0m"};
 }
 
 }  // namespace
