@@ -29,7 +29,6 @@ TEST_F(Settings, AddKeysThatTheFileLacks) {
   EXPECT_EQ(load({{"connect_limit_s", "7"}}).connect_limit, std::chrono::seconds(7));
   EXPECT_EQ(load({{"max_contact_speed_m_s", "inf"}}).max_contact_speed_m_s,
             std::numeric_limits<double>::infinity());
-  EXPECT_EQ(load({{"radio.exponent", "3"}}).files, load({}).files);
   const Error wrong = bad_file_error([&] { load({{"connect_limit_s", "-7"}}); });
   EXPECT_EQ(wrong.where().line, 0) << "the file has no such line";
   const Error error = bad_file_error([&] { load({{"condition.cpu_factr", "2"}}); });
