@@ -139,6 +139,8 @@ std::string ShippedFiles::why_none(ShippedKind kind, const std::string& given,
   if (fs::is_regular_file(folder / file, ignored))
     return fmt::format("'{}' is no shipped {}. To use the file here, write '{}'.", given,
                        place.name, file);
+  if (fs::is_directory(folder / given, ignored))
+    return fmt::format("'{}' is a folder, not a {}.", given, place.name);
   const auto files = list(kind);
   std::vector<std::string_view> names;
   for (const ShippedFile& one : files) names.push_back(one.name);
