@@ -36,6 +36,8 @@ TEST_F(Settings, AddKeysThatTheFileLacks) {
 }
 
 TEST_F(Settings, ReplaceArrays) {
+  EXPECT_THAT(load({{"uav.position_m", "[1, -2, 3.5]"}}).name,
+              testing::EndsWith("-position_m-1--2-3.5"));
   EXPECT_EQ(load({{"uav.position_m", "[1, 2, 3.5]"}}).uavs.at(1).placement.p_WB,
             (uav::Vec3{1, 2, 3.5}));
   EXPECT_EQ(load({{"anchors", "[\"blue_box\", \"red_box\", \"tree\"]"}}).anchors.size(), 3u);
