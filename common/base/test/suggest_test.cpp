@@ -14,6 +14,7 @@ TEST(Nearest, FindsTyposAndOtherUnits) {
                                   {"delai", "delay"},
                                   {"perod_ms", "period_ms"},
                                   {"period_s", "period_ms"},
+                                  {"DELAY", "delay"},
                                   {"rate", "rate_hz"}}) {
     EXPECT_EQ(nearest(word, kKeys), key);
   }

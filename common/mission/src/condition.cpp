@@ -107,8 +107,8 @@ class Parser {
       if (unit.name == name) condition.unit = &unit;
     }
     if (condition.unit != nullptr) return ok_status();
-    return wrong("has the unit " + quoted(name) + "; of " + quoted(condition.quantity->name) +
-                 ", " + allowed_hint(name, names));
+    return wrong((name.empty() ? "lacks a unit" : "has the unit " + quoted(name)) + "; of " +
+                 quoted(condition.quantity->name) + ", " + allowed_hint(name, names));
   }
 
   Status share(Condition& condition) {

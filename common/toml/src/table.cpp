@@ -54,6 +54,8 @@ std::string describe(const ::toml::node& node) {
   }
 }
 
+constexpr std::string_view kArrayOfStrings = "an array of strings";
+
 bool is_identifier(std::string_view text) {
   constexpr std::string_view kAllowed =
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-.";
@@ -151,7 +153,10 @@ void Table::fail_type(std::string_view key, const Node& found, std::string_view 
 const Node& Table::required(std::string_view key) const {
   const ::toml::node* node = as_table(*table_).get(key);
   if (node == nullptr) {
-    throw Error(ErrorCode::kBadFile, where(), title() + " lacks the key '" + string_of(key) + "'")
+    const bool is_empty = path_.empty() && as_table(*table_).empty();
+    throw Error(ErrorCode::kBadFile, where(),
+                (is_empty ? "the file is empty; it needs" : title() + " lacks") + " the key '" +
+                    string_of(key) + "'")
         .about(string_of(key));
   }
   return opaque(*node);
@@ -288,7 +293,7 @@ std::filesystem::path Table::existing_file(std::string_view key) const {
 
 std::vector<const Node*> Table::elements(std::string_view key, std::string_view expected) const {
   const Node& node = required(key);
-  if (raw(node).is_string())
+  if (raw(node).is_string() && expected == kArrayOfStrings)
     fail_at(node, key,
             "must be " + string_of(expected) + ", but is " + describe(raw(node)) +
                 ". Write it in brackets: [\"" + raw(node).as_string()->get() + "\"]");
@@ -300,7 +305,7 @@ std::vector<const Node*> Table::elements(std::string_view key, std::string_view 
 
 std::vector<std::string> Table::texts(std::string_view key) const {
   std::vector<std::string> texts;
-  for (const Node* element : elements(key, "an array of strings"))
+  for (const Node* element : elements(key, kArrayOfStrings))
     texts.push_back(text_of(key, *element, "an array of strings only"));
   return texts;
 }
@@ -367,6 +372,10 @@ Table Table::table(std::string_view key, std::span<const std::string_view> allow
 
 std::vector<Table> Table::tables(std::string_view key) const {
   const std::string expected = "one or more tables [[" + child_path(key) + "]]";
+  if (raw(required(key)).is_table())
+    fail_at(required(key), key,
+            "may be there several times. Write [[" + child_path(key) + "]] in place of [" +
+                child_path(key) + "]");
   const std::vector<const Node*> all = elements(key, expected);
   if (all.empty()) fail(key, "must be " + expected + ", but is an empty array");
   std::vector<Table> tables;

@@ -49,6 +49,7 @@ TEST(Table, RefusesUnknownAndMissingKeys) {
       error_of("[a]\nrate = 1\n", [](const Table& t) { (void)t.table("a", {"rate_hz"}); }).what(),
       "f.toml:2: unknown key 'rate' in [a]; did you mean 'rate_hz'? Allowed: 'rate_hz'");
   expect_error("[[x]]\ny = 1\n[[x]]\nz = 1\n", keys_of_x, 4, "z");
+  expect_error("\n[x]\ny = 1\n", keys_of_x, 2, "x");
   // The header of the table that lacks the key.
   expect_error(
       "\n[a.b]\n", [](const Table& t) { (void)t.table("a").table("b").text("k"); }, 2, "k");

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <sstream>
 
 #include <fmt/format.h>
 
@@ -38,23 +39,34 @@ const Place& place_of(ShippedKind kind) {
   return kPlaces.at(static_cast<std::size_t>(kind));
 }
 
-/// The first comment of an XML file up to its first full stop or colon.
-std::string first_comment(const std::string& xml) {
-  const std::size_t mark = xml.find("<!--");
-  if (mark == std::string::npos) return {};
+/// The text up to its first full stop or colon, on one line.
+std::string first_sentence(const std::string& comment) {
   std::string text;
-  const std::size_t begin = std::min(xml.find_first_not_of(" \n", mark + 4), xml.size());
-  for (std::size_t at = begin; at < xml.size(); ++at) {
-    const char next = at + 1 < xml.size() ? xml[at + 1] : '\n';
-    const bool is_end = (xml[at] == '.' || xml[at] == ':') && (next == ' ' || next == '\n');
-    if (is_end || xml.compare(at, 3, "-->") == 0) break;
-    const bool is_blank = xml[at] == ' ' || xml[at] == '\n';
+  const std::size_t begin = std::min(comment.find_first_not_of(" \n"), comment.size());
+  for (std::size_t at = begin; at < comment.size(); ++at) {
+    const char next = at + 1 < comment.size() ? comment[at + 1] : '\n';
+    if ((comment[at] == '.' || comment[at] == ':') && (next == ' ' || next == '\n')) break;
+    const bool is_blank = comment[at] == ' ' || comment[at] == '\n';
     if (!is_blank)
-      text += xml[at];
+      text += comment[at];
     else if (!text.ends_with(' '))
       text += ' ';
   }
   return text;
+}
+
+std::string first_comment_of_xml(const std::string& xml) {
+  const std::size_t mark = xml.find("<!--");
+  if (mark == std::string::npos) return {};
+  return xml.substr(mark + 4, xml.find("-->", mark) - mark - 4);
+}
+
+std::string first_comment_of_toml(const std::string& toml) {
+  std::string comment;
+  std::istringstream lines(toml);
+  for (std::string line; std::getline(lines, line) && line.starts_with('#');)
+    comment += line.substr(1) + "\n";
+  return comment;
 }
 
 /// Whether a file that could be meant by a shipped file's name is of that kind.
@@ -67,9 +79,11 @@ bool is_of_kind(const fs::path& file, const Place& place) try {
 }
 
 std::string description_of(const fs::path& file) {
-  if (file.extension() == ".sdf") return first_comment(os::read_file(file, 1 << 20));
-  const toml::Document document = toml::Document::load(file);
-  return document.root().text_or("description", "");
+  const std::string text = os::read_file(file, 1 << 20);
+  if (file.extension() == ".sdf") return first_sentence(first_comment_of_xml(text));
+  const toml::Document document = toml::Document::parse(text, file);
+  return document.root().has("description") ? document.root().text("description")
+                                            : first_sentence(first_comment_of_toml(text));
 }
 
 }  // namespace
@@ -125,6 +139,8 @@ std::string ShippedFiles::why_none(ShippedKind kind, const std::string& given,
   if (fs::is_regular_file(folder / file, ignored))
     return fmt::format("'{}' is no shipped {}. To use the file here, write '{}'.", given,
                        place.name, file);
+  if (fs::is_directory(folder / given, ignored))
+    return fmt::format("'{}' is a folder, not a {}.", given, place.name);
   const auto files = list(kind);
   std::vector<std::string_view> names;
   for (const ShippedFile& one : files) names.push_back(one.name);

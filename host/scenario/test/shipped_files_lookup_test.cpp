@@ -86,6 +86,11 @@ TEST_F(ShippedFilesLookup, DescribesAWorldByTheBeginningOfItsFirstComment) {
   EXPECT_EQ(worlds[1].description, "A yard of 4.5 m x 3 m");
 }
 
+TEST_F(ShippedFilesLookup, DescribesAFileWithoutADescriptionByTheBeginningOfItsFirstComment) {
+  folder_.write("data/missions/a.toml", "# Three tasks\n# in one: measure.\nx = 1\n");
+  EXPECT_EQ(shipped_.list(ShippedKind::kMission)[0].description, "Three tasks in one");
+}
+
 TEST_F(ShippedFilesLookup, BelongsToAProgramInstalledOrInItsBuildFolder) {
   EXPECT_EQ(ShippedFiles::of_program(folder_.path("build/release/bin/tether"))
                 .find(ShippedKind::kScenario, "hover"),

@@ -23,11 +23,10 @@ std::vector<std::uint64_t> consecutive(std::int64_t first, std::int64_t count) {
 }
 
 std::vector<std::uint64_t> read_seeds(const toml::Table& root) {
-  if (root.has("seeds") == root.has("trials")) {
-    root.fail("trials",
-              "or 'seeds' must be given, not both: a number of trials (with 'first_seed'), or an "
-              "array of seeds.");
-  }
+  if (root.has("seeds") && root.has("trials"))
+    root.fail("trials", "cannot be used with 'seeds'. Remove one of them.");
+  if (!root.has("seeds") && !root.has("trials"))
+    root.fail("trials", "is missing. Write trials = 10, or seeds = [1, 2, 3].");
   if (root.has("trials")) {
     const std::int64_t first = root.integer_or("first_seed", 0, 1'000'000'000'000, 1);
     return consecutive(first, root.integer_or("trials", 1, kMostTrials, 1));

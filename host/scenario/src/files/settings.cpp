@@ -120,7 +120,11 @@ void apply_to_profiles(const std::vector<Setting>& settings, Scenario& scenario)
 
 std::string name_suffix(const std::vector<Setting>& settings) {
   std::string suffix;
-  for (const auto& [key, value] : settings) {
+  for (auto [key, value] : settings) {
+    if (value.starts_with('['))
+      std::erase_if(value, [](char c) {
+        return std::string_view("[]\" ").find(c) != std::string_view::npos;
+      });
     const bool is_path = value.find('/') != std::string::npos;
     suffix += "-" + key.substr(key.rfind('.') + 1) + "-" +
               (is_path ? std::filesystem::path(value).stem().string() : value);

@@ -26,7 +26,7 @@ const char* to_text(ShippedKind kind);
 
 struct ShippedFile {
   std::string name;         ///< of the file, without its extension; of a model's folder
-  std::string description;  ///< one line; of an SDF file the beginning of its first comment
+  std::string description;  ///< one line: the key, or the beginning of the first comment
 };
 
 /// The files that Tether ships, found by name. Reads the folder at each call; thread-safe.

@@ -4,7 +4,10 @@
 #include <cmath>
 #include <iterator>
 #include <string>
+#include <string_view>
 #include <vector>
+
+#include <tether/base/suggest.h>
 
 namespace tether::sim {
 
@@ -41,10 +44,10 @@ const NumberElement* find_number(const std::string& name) {
   return found == std::end(kNumbers) ? nullptr : found;
 }
 
-std::string allowed_elements() {
-  std::string names = "rotor";
-  for (const NumberElement& number : kNumbers) names += std::string(", ") + number.name;
-  return names;
+std::string allowed_elements(const std::string& given) {
+  std::vector<std::string_view> names = {"rotor"};
+  for (const NumberElement& number : kNumbers) names.emplace_back(number.name);
+  return allowed_hint(given, names);
 }
 
 /// Names all of those that are missing.
@@ -88,7 +91,7 @@ void read_children(const SdfSource& source, const sdf::ElementPtr& multirotor,
       airframe.*number->member = read_number(source, child, number->may_be_zero);
     } else {
       refuse(source, child,
-             "is not a parameter of a multirotor; allowed are " + allowed_elements());
+             "is not a parameter of a multirotor; " + allowed_elements(child->GetName()));
     }
   });
 }
@@ -123,8 +126,8 @@ MultirotorParameters read_airframe(const SdfSource& source, const sdf::ElementPt
     if (!number.may_be_missing) needed.push_back(number.name);
     airframe.*number.member = typical.*number.member;
   }
-  require(source, multirotor, needed);
   read_children(source, multirotor, airframe);
+  require(source, multirotor, needed);
   if (airframe.rotors.size() < kMinRotors ||
       airframe.rotors.size() > uav::MultirotorState::kMaxRotors) {
     refuse(source, multirotor,

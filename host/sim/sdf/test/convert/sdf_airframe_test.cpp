@@ -84,6 +84,9 @@ TEST_F(BadAirframes, AreRefused) {
   expect_refused({
       {"<max_rotor_speed_rad_s>900</max_rotor_speed_rad_s>\n", "", 3, kMultirotor},
       {"<max_tilt_rad>", "<wings>2</wings>\n<max_tilt_rad>", 15, "<wings> of model 'drone'"},
+      {"<max_rotor_speed_rad_s>900</max_rotor_speed_rad_s>",
+       "<max_rotor_speed_rpm>9</max_rotor_speed_rpm>", 12,
+       "<max_rotor_speed_rpm> of model 'drone'"},
       {"<max_tilt_rad>0.5", "<max_tilt_rad>-0.5", 15, kTilt},
       {"<max_tilt_rad>0.5", "<max_tilt_rad>0", 15, kTilt},
       {"<max_tilt_rad>0.5", "<max_tilt_rad>20 deg", 15, kTilt},

@@ -11,8 +11,8 @@ namespace tether::sim {
 ///
 /// Nested models become separate models named "outer::inner". A UAV's body is its link
 /// "base_link", else its first one; links fixed to it are merged into it. Its airframe is its
-/// <tether:multirotor>, all of whose elements are required; models/hummingbird/model.sdf shows
-/// them.
+/// <tether:multirotor> (docs/guide/your-own-uav.md); what is missing there of drag, motors and
+/// limits is as of models/hummingbird/model.sdf.
 ///
 /// @throws Error(kBadFile) with file, line and element for input that cannot be used: missing file,
 ///   XML or SDF errors, not exactly one <world>, numbers followed by a unit or other text,
