@@ -89,8 +89,7 @@ Result<std::vector<CountedBlock>> paired(const std::vector<BlockTimes>& measured
   std::vector<CountedBlock> pairs;
   for (const BlockTimes& block : counted) {
     const BlockTimes* times = find(measured, block.name);
-    if (!times || block.work.size() != kWorkClasses)
-      return not_measured(block.name);
+    if (!times || block.work.size() != kWorkClasses) return not_measured(block.name);
     CountedBlock pair{.name = block.name, .time_ns = 1e6 * quartiles(times->cpu_ms).median};
     std::copy(block.work.begin(), block.work.end(), pair.work.begin());
     pairs.push_back(std::move(pair));
@@ -120,9 +119,9 @@ std::string bounds_text(const CountedTarget& target) {
          "). No cost is below what the widest cores need: an eighth of a\n"
          "cycle, a quarter for floating-point and vector work, half for a multiplication, and one "
          "cycle for\na division or an atomic operation.\n" +
-         (bounded.empty() ? "No cost is at this bound.\n"
-                          : "At this bound, because the blocks do not show more: " + bounded +
-                                ".\n");
+         (bounded.empty()
+              ? "No cost is at this bound.\n"
+              : "At this bound, because the blocks do not show more: " + bounded + ".\n");
 }
 
 std::string signed_percent(double share) {

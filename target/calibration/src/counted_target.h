@@ -16,7 +16,7 @@ namespace tether::calibration {
 struct CountedTarget {
   os::Emulator emulator;  ///< without costs
   Costs_ns costs{};
-  Costs_ns floor_ns{};  ///< no cost is less
+  Costs_ns floor_ns{};               ///< no cost is less
   std::vector<CountedBlock> blocks;  ///< of the fit
   std::vector<double> left_out;      ///< error of each, by a fit to the others
   CountedBlock whole;                ///< the whole step, which is not in the fit

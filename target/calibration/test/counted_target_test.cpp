@@ -46,8 +46,8 @@ TEST_F(CountedTargetTest, HasTheCostsOfTheMachineAndPredictsTheStepThatIsNotInTh
   EXPECT_EQ(target->blocks.size(), 13u);
   EXPECT_EQ(target->whole.name, kWholeStep);
   EXPECT_NEAR(relative_error(target->costs, target->whole), 0.0, 1e-6);
-  EXPECT_THAT(prediction_table(*target), testing::AllOf(HasSubstr("not in the fit"),
-                                                        HasSubstr("No cost is at this bound")));
+  EXPECT_THAT(prediction_table(*target),
+              testing::AllOf(HasSubstr("not in the fit"), HasSubstr("No cost is at this bound")));
 
   const ::toml::table file = ::toml::parse(counted_target_text("bench", *target, there_, counted_));
   EXPECT_EQ(file["clock"].value<std::string>(), "counted");
@@ -75,8 +75,7 @@ TEST_F(CountedTargetTest, TakesNoWorkForFreeThatTheTimesDoNotShow) {
 TEST_F(CountedTargetTest, RefusesOtherBlocks) {
   Calibration older = there_;
   older.kernels.clear();
-  EXPECT_THAT(fit_target(kEmulator, older, counted_).failure().message,
-              HasSubstr("\"integers\""));
+  EXPECT_THAT(fit_target(kEmulator, older, counted_).failure().message, HasSubstr("\"integers\""));
   older.kernels = {there_.kernels.back()};
   EXPECT_THAT(fit_target(kEmulator, older, counted_).failure().message, HasSubstr("\"b0\""));
   counted_.blocks.front().work.clear();

@@ -84,8 +84,8 @@ std::uint64_t cost_of(const Work& work) {
   return std::inner_product(work.begin(), work.end(), page->cost_units.begin(), std::uint64_t{0});
 }
 
-// One addition for each block. An addition after each instruction that can fault would count exactly
-// what is executed of a block, but makes the program run 1.4 times as long.
+// One addition for each block. An addition after each instruction that can fault would count
+// exactly what is executed of a block, but makes the program run 1.4 times as long.
 void translated(qemu_plugin_id_t, qemu_plugin_tb* block) {
   Work work{};
   const std::size_t instructions = qemu_plugin_tb_n_insns(block);

@@ -13,36 +13,36 @@ struct Number {
 };
 
 constexpr Number kCalls[] = {
-    {0, 63, kWaits},     // read
-    {7, -1, kWaits},     // poll
-    {17, 67, kWaits},    // pread64
-    {19, 65, kWaits},    // readv
-    {23, -1, kWaits},    // select
-    {24, 124, kWaits},   // sched_yield
-    {34, -1, kWaits},    // pause
-    {35, 101, kWaits},   // nanosleep
-    {42, 203, kWaits},   // connect
-    {43, 202, kWaits},   // accept
-    {45, 207, kWaits},   // recvfrom
-    {47, 212, kWaits},   // recvmsg
-    {61, 260, kWaits},   // wait4
-    {65, 193, kWaits},   // semop
-    {70, 188, kWaits},   // msgrcv
-    {73, 32, kWaits},    // flock
-    {128, 137, kWaits},  // rt_sigtimedwait
-    {130, 133, kWaits},  // rt_sigsuspend
-    {208, 4, kWaits},    // io_getevents
-    {220, 192, kWaits},  // semtimedop
-    {230, 115, kWaits},  // clock_nanosleep
-    {232, -1, kWaits},   // epoll_wait
-    {243, 183, kWaits},  // mq_timedreceive
-    {247, 95, kWaits},   // waitid
-    {270, 72, kWaits},   // pselect6
-    {271, 73, kWaits},   // ppoll
-    {281, 22, kWaits},   // epoll_pwait
-    {288, 242, kWaits},  // accept4
-    {295, 69, kWaits},   // preadv
-    {299, 243, kWaits},  // recvmmsg
+    {0, 63, kWaits},           // read
+    {7, -1, kWaits},           // poll
+    {17, 67, kWaits},          // pread64
+    {19, 65, kWaits},          // readv
+    {23, -1, kWaits},          // select
+    {24, 124, kWaits},         // sched_yield
+    {34, -1, kWaits},          // pause
+    {35, 101, kWaits},         // nanosleep
+    {42, 203, kWaits},         // connect
+    {43, 202, kWaits},         // accept
+    {45, 207, kWaits},         // recvfrom
+    {47, 212, kWaits},         // recvmsg
+    {61, 260, kWaits},         // wait4
+    {65, 193, kWaits},         // semop
+    {70, 188, kWaits},         // msgrcv
+    {73, 32, kWaits},          // flock
+    {128, 137, kWaits},        // rt_sigtimedwait
+    {130, 133, kWaits},        // rt_sigsuspend
+    {208, 4, kWaits},          // io_getevents
+    {220, 192, kWaits},        // semtimedop
+    {230, 115, kWaits},        // clock_nanosleep
+    {232, -1, kWaits},         // epoll_wait
+    {243, 183, kWaits},        // mq_timedreceive
+    {247, 95, kWaits},         // waitid
+    {270, 72, kWaits},         // pselect6
+    {271, 73, kWaits},         // ppoll
+    {281, 22, kWaits},         // epoll_pwait
+    {288, 242, kWaits},        // accept4
+    {295, 69, kWaits},         // preadv
+    {299, 243, kWaits},        // recvmmsg
     {57, -1, kStartsProcess},  // fork
     {58, -1, kStartsProcess},  // vfork
     {60, 93, kEndsThread},     // exit

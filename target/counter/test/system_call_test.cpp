@@ -17,16 +17,16 @@ struct CallCase {
 TEST(SystemCallOf, IsKnownForBothArchitectures) {
   constexpr std::uint64_t kPrivate = 128, kRealTime = 256;
   const CallCase cases[] = {{"read", 0, 63, 3, 0, kWaits},
-                        {"write", 1, 64, 3, 0, kShort},
-                        {"ppoll", 271, 73, 0, 0, kWaits},
-                        {"clone of a thread", 56, 220, 0x3d0f00, 0, kStartsThread},
-                        {"clone of a process", 56, 220, 0x4111, 0, kStartsProcess},
-                        {"exit", 60, 93, 0, 0, kEndsThread},
-                        {"exit_group", 231, 94, 0, 0, kShort},
-                        {"futex wait", 202, 98, 0, 0 | kPrivate, kWaits},
-                        {"futex wait_bitset", 202, 98, 0, 9 | kPrivate | kRealTime, kWaits},
-                        {"futex wake", 202, 98, 0, 1 | kPrivate, kWakes},
-                        {"unknown", 100'000, 100'000, 0, 0, kShort}};
+                            {"write", 1, 64, 3, 0, kShort},
+                            {"ppoll", 271, 73, 0, 0, kWaits},
+                            {"clone of a thread", 56, 220, 0x3d0f00, 0, kStartsThread},
+                            {"clone of a process", 56, 220, 0x4111, 0, kStartsProcess},
+                            {"exit", 60, 93, 0, 0, kEndsThread},
+                            {"exit_group", 231, 94, 0, 0, kShort},
+                            {"futex wait", 202, 98, 0, 0 | kPrivate, kWaits},
+                            {"futex wait_bitset", 202, 98, 0, 9 | kPrivate | kRealTime, kWaits},
+                            {"futex wake", 202, 98, 0, 1 | kPrivate, kWakes},
+                            {"unknown", 100'000, 100'000, 0, 0, kShort}};
   for (const CallCase& one : cases) {
     EXPECT_EQ(system_call(false, one.x86_64, one.first, one.second), one.call) << one.name;
     EXPECT_EQ(system_call(true, one.aarch64, one.first, one.second), one.call) << one.name;

@@ -8,9 +8,8 @@
 #include <string>
 #include <vector>
 
-#include <pthread.h>
-
 #include <gtest/gtest.h>
+#include <pthread.h>
 
 #include <tether/base/random.h>
 #include <tether/client_testing/manual_time_source.h>
