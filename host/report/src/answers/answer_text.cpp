@@ -12,7 +12,8 @@ namespace tether::report {
 
 namespace {
 
-/// Around the lead of an answer: bold, and on a terminal green, red or yellow by its ruling, if it has one.
+/// Around the lead of an answer: bold, and on a terminal green, red or yellow by its ruling, if it
+/// has one.
 std::pair<std::string, std::string> marks_of(std::optional<Ruling> ruling, Markup markup) {
   if (markup == Markup::kPlain) return {};
   if (markup == Markup::kMarkdown) return {"**", "**"};
