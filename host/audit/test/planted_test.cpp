@@ -192,6 +192,9 @@ const Planted kPlanted[] = {
     {"effect_late",
      {0, 2},
      [](Record& r) { r.commands[effect_of(r, where(r, is_command))].message.applied_at += kNs; }},
+    {"effect_of_another_command",
+     {2},
+     [](auto& r) { r.commands[effect_of(r, where(r, is_command))].message.vx_H_m_s *= -1.0; }},
     {"effect_missing",
      {2, 3},
      [](Record& r) {
@@ -307,6 +310,7 @@ const Planted kPlanted[] = {
     {"st_ahead_of_running_sut_at_end",
      {4},
      [](Record& r) {
+       r.footer->end = "time_limit";
        r.footer->et_at_end.back() = same_instant(r.footer->st_at_end) - kNs;
        for (Entry& entry : r.interactions) {
          Interaction& m = entry.message;
