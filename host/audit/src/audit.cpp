@@ -27,7 +27,7 @@ Verdict audit(const record::Record& record) {
   check_contacts(record, report);
   check_radio(record, grid, report);
   check_channel(record, grid, report);
-  check_battery(record, grid, report);
+  check_battery(record, report);
   if (verdict.synchronised) {
     check_interactions(record, grid, report);
     check_rows(record, report);

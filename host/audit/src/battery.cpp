@@ -55,58 +55,42 @@ class Model {
   const EnergyInfo& info_;
 };
 
-// When a SUT had computed how much: each request tells it, from the next step boundary on a core is
-// busy with it.
+// How much a SUT had computed: from each reply until its next request, on a core; on a shared
+// board, on a share of one, so that only the sum is known.
 class BusyTime {
  public:
-  BusyTime(const SutRow& row, const Boundaries& grid) : grid_(grid) {
-    Wide resumed = 0;
-    for (const Entry* entry : row.interactions) {
-      const record::Interaction& m = entry->message;
-      calls_.push_back(
-          {wide(m.request_at), m.computed ? wide(*m.computed) : wide(m.request_at) - resumed});
-      resumed = wide(m.reply_at);
-    }
-    known_until_ = resumed;
+  explicit BusyTime(const SutRow& row) : row_(row) {
+    if (!row.interactions.empty()) known_until_ = wide(row.interactions.back()->message.reply_at);
   }
 
-  // From what is charged at least by then, to what was computed. Of later instants, the record does
-  // not have the request.
+  // Of later instants, the record does not have the request.
   Wide known_until() const { return known_until_; }
+  // At least and at most. Instants must not decrease.
   std::pair<Wide, Wide> range(Wide at) {
-    for (; next_ < calls_.size() && calls_[next_].at <= at; ++next_) {
-      drain(grid_.at_or_before(calls_[next_].at) + grid_.step());
-      pending_ += calls_[next_].computed;
-      told_ += calls_[next_].computed;
+    for (; next_ < row_.interactions.size(); ++next_) {
+      const record::Interaction& m = row_.interactions[next_]->message;
+      const Wide computed = m.computed ? wide(*m.computed) : wide(m.request_at) - resumed_;
+      const Wide most = done_ + std::clamp<Wide>(at - resumed_, 0, std::max<Wide>(computed, 0));
+      if (wide(m.request_at) > at) return {m.computed ? done_ : most, most};
+      done_ += computed;
+      resumed_ = wide(m.reply_at);
     }
-    const Wide more = std::clamp<Wide>(at - drained_at_, 0, std::max<Wide>(pending_, 0));
-    return {drained_ + more, told_};
+    return {done_, done_};
   }
 
  private:
-  struct Call {
-    Wide at = 0, computed = 0;
-  };
-  void drain(Wide until) {
-    const Wide more = std::clamp<Wide>(until - drained_at_, 0, std::max<Wide>(pending_, 0));
-    drained_ += more;
-    pending_ -= more;
-    drained_at_ = std::max(drained_at_, until);
-  }
-
-  const Boundaries& grid_;
-  std::vector<Call> calls_;
+  const SutRow& row_;
   std::size_t next_ = 0;
-  Wide known_until_ = 0, pending_ = 0, told_ = 0, drained_ = 0, drained_at_ = 0;
+  Wide known_until_ = 0, resumed_ = 0, done_ = 0;
 };
 
 class BatteryCheck {
  public:
-  BatteryCheck(const SutRow& row, double step_s, const Boundaries& grid, Report& report)
+  BatteryCheck(const SutRow& row, double step_s, Report& report)
       : info_(*row.info->energy),
         model_(info_),
         step_s_(step_s),
-        busy_(row, grid),
+        busy_(row),
         counts_work_(!row.info->concurrent),
         report_(report) {}
 
@@ -173,14 +157,15 @@ bool is_sound(const EnergyInfo& info) {
 }
 
 // Each message has its place with the ground truth of its UAV.
-void check_samples(const record::Record& record, const Boundaries& grid, Report& report) {
+void check_samples(const record::Record& record, Report& report) {
   const double step_s = to_seconds(record.header.step);
   const auto tracks = tracks_of(record);
   std::map<std::string, BatteryCheck> checks;
-  for (const auto& [uav, row] : rows_of(record)) {
+  const auto rows = rows_of(record);
+  for (const auto& [uav, row] : rows) {
     if (!row.info->energy) continue;
     if (is_sound(*row.info->energy))
-      checks.try_emplace(uav, row, step_s, grid, report);
+      checks.try_emplace(uav, row, step_s, report);
     else
       report.add("the model of the battery of \"" + uav + "\" makes no sense");
   }
@@ -218,8 +203,8 @@ void check_reading(const Entry& entry, const std::vector<const Battery*>& logged
 
 }  // namespace
 
-void check_battery(const record::Record& record, const Boundaries& grid, Report& report) {
-  check_samples(record, grid, report);
+void check_battery(const record::Record& record, Report& report) {
+  check_samples(record, report);
   std::map<std::string, std::vector<const Battery*>> logged;
   for (const auto& battery : record.batteries)
     logged[battery.message.uav].push_back(&battery.message);

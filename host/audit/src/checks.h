@@ -40,7 +40,7 @@ void check_channel(const record::Record& record, const Boundaries& grid, Report&
 /// Rule 0: charge, voltage, current and energy by cause agree with each other, and with what was
 /// computed, by the battery's model in the header. Rule 1 for readings of the battery: what it had
 /// at that ST, by the battery's channel.
-void check_battery(const record::Record& record, const Boundaries& grid, Report& report);
+void check_battery(const record::Record& record, Report& report);
 
 /// Rules 3 and 4 across SUTs: replies are sent in the order of their timestamps, and ST never
 /// passes a SUT that can still act, in the order of the file and of wall time.
