@@ -223,6 +223,17 @@ TEST(Audit, FreeRunningIsNotSynchronised) {
   EXPECT_TRUE(verdict.passed()) << to_text(verdict);
 }
 
+TEST(Audit, WhatTakesEffectIsWhatWasCommanded) {
+  for (const bool is_free : {false, true}) {
+    Record record = is_free ? free_running() : generate({});
+    record.commands[5].message.vx_H_m_s *= -1.0;
+    EXPECT_EQ(rules_of(record), Rules{2});
+  }
+  Record record = generate({});
+  where(record, [](const Interaction& m) { return m.kind == record::kCommand; }).command.reset();
+  EXPECT_EQ(rules_of(record), Rules{0});
+}
+
 Interaction& first_reading(Record& record) {
   return std::ranges::find_if(
              record.interactions,

@@ -192,9 +192,6 @@ const Planted kPlanted[] = {
     {"effect_late",
      {0, 2},
      [](Record& r) { r.commands[effect_of(r, where(r, is_command))].message.applied_at += kNs; }},
-    {"effect_of_another_command",
-     {2},
-     [](auto& r) { r.commands[effect_of(r, where(r, is_command))].message.vx_H_m_s *= -1.0; }},
     {"effect_missing",
      {2, 3},
      [](Record& r) {
