@@ -58,7 +58,7 @@ Record one_message() {
   return record;
 }
 
-std::size_t findings(const Record& record) {
+std::size_t channel_findings(const Record& record) {
   Verdict verdict;
   Report report(verdict);
   check_channel(record, Boundaries(kStep), report);
@@ -67,7 +67,7 @@ std::size_t findings(const Record& record) {
 }
 
 TEST(AuditOfTheChannel, FindsWhatItsSettingsContradict) {
-  EXPECT_EQ(findings(one_message()), 0u);
+  EXPECT_EQ(channel_findings(one_message()), 0u);
   for (const Planted& planted : std::vector<Planted>{
            {"another fate", {}, [](Record& r) { r.radio[0].message.outcome = "noise"; }},
            {"a longer message", {}, [](Record& r) { r.radio[0].message.bytes += 1; }},
@@ -91,7 +91,7 @@ TEST(AuditOfTheChannel, FindsWhatItsSettingsContradict) {
             }}}) {
     Record record = one_message();
     planted.plant(record);
-    EXPECT_GT(findings(record), 0u) << planted.what;
+    EXPECT_GT(channel_findings(record), 0u) << planted.what;
   }
 }
 
@@ -104,11 +104,11 @@ TEST(AuditOfTheChannel, CountsInboxes) {
   second.sent_at += microseconds(500);
   *second.began_at += microseconds(500);
   second.at += microseconds(500);
-  EXPECT_EQ(findings(record), 1u);
+  EXPECT_EQ(channel_findings(record), 1u);
   second.outcome = "inbox_full";
-  EXPECT_EQ(findings(record), 0u);
+  EXPECT_EQ(channel_findings(record), 0u);
   record.header.radio.inbox_messages = 2;
-  EXPECT_EQ(findings(record), 1u);
+  EXPECT_EQ(channel_findings(record), 1u);
 }
 
 // "b" transmits while "a" does, and hears nothing.
@@ -117,9 +117,9 @@ TEST(AuditOfTheChannel, KnowsWhoTransmits) {
   record.radio.push_back(record.radio[0]);
   record::RadioMessage& back = record.radio[1].message;
   std::swap(back.uav, back.to);
-  EXPECT_EQ(findings(record), 2u);
+  EXPECT_EQ(channel_findings(record), 2u);
   record.radio[0].message.outcome = back.outcome = "half_duplex";
-  EXPECT_EQ(findings(record), 0u);
+  EXPECT_EQ(channel_findings(record), 0u);
 }
 
 TEST(AuditOfTheChannel, OfAnIdealRadioIsItsDelay) {
@@ -133,9 +133,9 @@ TEST(AuditOfTheChannel, OfAnIdealRadioIsItsDelay) {
        .sent_at = m.sent_at,
        .at = m.sent_at + microseconds(10),
        .outcome = "delivered"};
-  EXPECT_EQ(findings(record), 0u);
+  EXPECT_EQ(channel_findings(record), 0u);
   m.at += kNs;
-  EXPECT_EQ(findings(record), 1u);
+  EXPECT_EQ(channel_findings(record), 1u);
 }
 
 }  // namespace

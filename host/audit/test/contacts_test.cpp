@@ -28,7 +28,7 @@ Record landing() {
   return record;
 }
 
-std::size_t findings(const Record& record) {
+std::size_t contact_findings(const Record& record) {
   Verdict verdict;
   Report report(verdict);
   check_contacts(record, report);
@@ -36,20 +36,20 @@ std::size_t findings(const Record& record) {
 }
 
 TEST(AuditOfContacts, FindsWhatTheGroundTruthContradicts) {
-  EXPECT_EQ(findings(landing()), 0u);
+  EXPECT_EQ(contact_findings(landing()), 0u);
   Record record = landing();
   record.contacts.clear();
-  EXPECT_EQ(findings(record), 1u);
+  EXPECT_EQ(contact_findings(record), 1u);
   record.footer->st_at_end = SimTime(20 * kStep);
-  EXPECT_EQ(findings(record), 0u) << "what finds the contact was not flown";
+  EXPECT_EQ(contact_findings(record), 0u) << "what finds the contact was not flown";
   record = landing();
   record.contacts[0].at = SimTime(20 * kStep);
-  EXPECT_EQ(findings(record), 1u) << "recorded late";
+  EXPECT_EQ(contact_findings(record), 1u) << "recorded late";
   record = landing();
   record.contacts[0].message.speed_m_s = 3.0;
-  EXPECT_EQ(findings(record), 1u);
+  EXPECT_EQ(contact_findings(record), 1u);
   record.header.moves_by_forces = false;
-  EXPECT_EQ(findings(record), 0u) << "velocities may jump";
+  EXPECT_EQ(contact_findings(record), 0u) << "velocities may jump";
 }
 
 }  // namespace
