@@ -149,7 +149,7 @@ void check_how(const record::Record& record, const Footer& footer, Report& repor
   const std::map<std::string_view, bool> possible = {
       {"finished",
        seen.has_finished && footer.expelled.empty() && seen.last_release == footer.st_at_end},
-      {"time_limit", seen.is_at_limit},
+      {"time_limit", !has_limit || wide(footer.st_at_end) == wide(record.header.time_limit)},
       {"battery_empty", seen.is_empty},
       {"flooded", seen.is_expelled},
       {"simulator_lost", !seen.has_finished},

@@ -156,7 +156,7 @@ class MotionCheck {
     const double turned_rad =
         std::max(length(last.w_WB_B_rad_s), length(next.message.w_WB_B_rad_s)) * dt_s;
     // Turns about several axes do not add up exactly. The engine's gyroscopic terms grow so, too.
-    if (most_rad_s2 > 0.0 && turned_rad < 1.0)
+    if (most_rad_s2 > 0.0)
       check("the rate of rotation", last.w_WB_B_rad_s, next.message.w_WB_B_rad_s,
             turn_rad(last, next.message), most_rad_s2, 1e-4 + turned_rad * turned_rad);
   }
