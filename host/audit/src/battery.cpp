@@ -170,7 +170,8 @@ void check_samples(const record::Record& record, Report& report) {
   const double step_s = to_seconds(record.header.step);
   const auto tracks = tracks_of(record);
   std::map<std::string, BatteryCheck> checks;
-  for (const auto& [uav, row] : rows_of(record)) {
+  const auto rows = rows_of(record);
+  for (const auto& [uav, row] : rows) {
     if (!row.info->energy) continue;
     if (is_sound(*row.info->energy))
       checks.try_emplace(uav, row, step_s, report);

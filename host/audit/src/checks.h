@@ -25,6 +25,9 @@ void check_newness(const record::Record& record, Report& report);
 /// cores; on a real one, all of them stop together.
 void check_boards(const record::Record& record, Report& report);
 
+/// Rule 2 for any policy: what takes effect is what was commanded.
+void check_velocities(const record::Record& record, Report& report);
+
 /// Rule 2 and the second half of rule 3: the effects of commands.
 void check_commands(const record::Record& record, const Boundaries& grid, Report& report);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 // Each command is matched with its effect by UAV and sequence (rule 2). Then one pass over the
@@ -55,17 +56,9 @@ std::vector<Due> match(Row& row, Report& report) {
     Due item{command, nullptr, wide(effect_at.value_or(SimTime{}))};
     if (effect != row.effects.end() && sequence_of(*effect) == sequence_of(command)) {
       item.effect = *effect;
-      const CommandEffect& applied = (*effect)->message;
-      if (command->message.command && applied.command() != *command->message.command)
-        report.add(2, **effect,
-                   "({}, {}, {}) m/s and {} rad/s take effect instead of what was commanded, ({}, "
-                   "{}, {}) m/s and {} rad/s",
-                   applied.vx_H_m_s, applied.vy_H_m_s, applied.vz_H_m_s, applied.yaw_rate_rad_s,
-                   command->message.command->vx_H_m_s, command->message.command->vy_H_m_s,
-                   command->message.command->vz_H_m_s, command->message.command->yaw_rate_rad_s);
-      if (effect_at && applied.applied_at != *effect_at)
-        report.add(2, **effect, "effect at ST {} instead of ST {}", ns(applied.applied_at),
-                   ns(*effect_at));
+      if (effect_at && (*effect)->message.applied_at != *effect_at)
+        report.add(2, **effect, "effect at ST {} instead of ST {}",
+                   ns((*effect)->message.applied_at), ns(*effect_at));
     }
     if (effect_at) due.push_back(item);
   }
@@ -127,20 +120,32 @@ Wide end_of(const record::Record& record) {
   return record.interactions.empty() ? Wide{0} : wide(record.interactions.back().at);
 }
 
-// Each command has its value, if any has.
-void check_values(const record::Record& record, Report& report) {
-  const auto has_value = [](const Logged<Interaction>& e) { return e.message.command.has_value(); };
-  if (std::ranges::none_of(record.interactions, has_value)) return;  // Tether 0.1.0
-  for (const Logged<Interaction>& entry : record.interactions)
-    if (has_value(entry) != (entry.message.kind == record::kCommand))
-      report.add(0, entry, "a {} {} a velocity", entry.message.kind,
-                 has_value(entry) ? "with" : "without");
-}
-
 }  // namespace
 
+void check_velocities(const record::Record& record, Report& report) {
+  std::map<std::pair<std::string, std::uint64_t>, record::VelocityCommand> asked;
+  for (const Logged<Interaction>& entry : record.interactions)
+    if (entry.message.command)
+      asked[{entry.message.uav, entry.message.sequence}] = *entry.message.command;
+  if (asked.empty() && record.header.time_limit <= Duration(0)) return;  // Tether 0.1.0
+  for (const Logged<Interaction>& entry : record.interactions)
+    if (entry.message.command.has_value() != (entry.message.kind == record::kCommand))
+      report.add(0, entry, "a {} {} a velocity", entry.message.kind,
+                 entry.message.command ? "with" : "without");
+  for (const Logged<CommandEffect>& effect : record.commands) {
+    const CommandEffect& m = effect.message;
+    const auto found = asked.find({m.uav, m.sequence});
+    if (found == asked.end() || found->second == m.command()) continue;
+    const auto& [vx, vy, vz, yaw_rate] = found->second;
+    report.add(
+        2, effect,
+        "({}, {}, {}) m/s and {} rad/s take effect instead of the command's ({}, {}, {}) m/s "
+        "and {} rad/s",
+        m.vx_H_m_s, m.vy_H_m_s, m.vz_H_m_s, m.yaw_rate_rad_s, vx, vy, vz, yaw_rate);
+  }
+}
+
 void check_commands(const record::Record& record, const Boundaries& grid, Report& report) {
-  check_values(record, report);
   std::map<std::string, Row> rows;
   for (const record::SutInfo& sut : record.header.suts) rows[sut.uav].concurrent = sut.concurrent;
   for (const Logged<Interaction>& entry : record.interactions) {

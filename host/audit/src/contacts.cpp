@@ -16,8 +16,10 @@ using record::Contact;
 using record::GroundTruth;
 using Touch = record::Logged<Contact>;
 
-// A UAV that is farther away before, and touches at the next message, has hit something.
+// A UAV that is farther away before, and touches at the next message, hits something: soon, because
+// the engine finds contacts with a tolerance.
 constexpr double kAway_m = 1e-3;
+constexpr Wide kSoon = 100'000'000;  // ns
 constexpr double kTolerance_m_s = 0.1;
 
 // The greatest speed of a point of the UAV around that instant; none if it is not known.
@@ -70,16 +72,14 @@ class ContactCheck {
                   entry.message.speed_m_s, *most + *others);
   }
 
-  // What a UAV touches by the end of a step, the next step finds.
   void check_touches(const std::string& uav, const Track& track) {
-    const Wide step = wide(record_.header.step);
     for (std::size_t i = 1; i < track.truths.size(); ++i) {
       const GroundTruth &last = track.truths[i - 1]->message, &next = track.truths[i]->message;
       if (!(last.clearance_m > kAway_m) || !(next.clearance_m <= 0.0)) continue;
-      if (!record_.footer || wide(next.at) + step > wide(record_.footer->st_at_end)) continue;
+      if (!record_.footer || wide(next.at) + kSoon > wide(record_.footer->st_at_end)) continue;
       const bool is_known = std::ranges::any_of(record_.contacts, [&](const Touch& entry) {
         return (entry.message.uav == uav || entry.message.with == uav) &&
-               wide(entry.message.at) <= wide(next.at) + step;
+               wide(entry.message.at) <= wide(next.at) + kSoon;
       });
       if (!is_known)
         return report_.add(0, *track.truths[i], "the UAV touches something, without a contact");

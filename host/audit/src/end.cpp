@@ -118,6 +118,9 @@ struct Evidence {
   SimTime last_release;
 };
 
+// A UAV without power falls so long before the run ends.
+constexpr Wide kFall = 2'000'000'000;  // ns
+
 Evidence evidence_of(const record::Record& record, const Footer& footer) {
   Evidence seen;
   std::map<std::string, bool> finished, empty;
@@ -127,7 +130,8 @@ Evidence evidence_of(const record::Record& record, const Footer& footer) {
   }
   for (const record::SutInfo& sut : record.header.suts) seen.has_finished &= finished[sut.uav];
   for (const auto& entry : record.batteries)
-    empty[entry.message.uav] = entry.message.at > SimTime{} && !(entry.message.current_A > 0.0);
+    empty[entry.message.uav] = (entry.message.at > SimTime{} && !(entry.message.current_A > 0.0)) ||
+                               wide(entry.message.at) + kFall <= wide(footer.st_at_end);
   for (const auto& [uav, is_empty] : empty) seen.is_empty |= is_empty;
   seen.is_expelled = !footer.expelled.empty();
   const Wide limit = wide(record.header.time_limit);
@@ -145,7 +149,7 @@ void check_how(const record::Record& record, const Footer& footer, Report& repor
   const std::map<std::string_view, bool> possible = {
       {"finished",
        seen.has_finished && footer.expelled.empty() && seen.last_release == footer.st_at_end},
-      {"time_limit", seen.is_at_limit},
+      {"time_limit", !has_limit || wide(footer.st_at_end) == wide(record.header.time_limit)},
       {"battery_empty", seen.is_empty},
       {"flooded", seen.is_expelled},
       {"simulator_lost", !seen.has_finished},

@@ -10,6 +10,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <vector>
 
 namespace tether::audit {
 namespace {
@@ -62,7 +63,17 @@ class MotionCheck {
       if (entry.message.at <= starts_) pushed_.insert(entry.message.uav);
       touched_.try_emplace(entry.message.uav, entry.message.at);
     }
-    for (const auto& [uav, track] : tracks_) knows_shapes_ &= track.info->extent_m > 0.0;
+    for (const auto& [uav, track] : tracks_) {
+      knows_shapes_ &= track.info->extent_m > 0.0;
+      if (fleet_.size() < track.truths.size()) fleet_.resize(track.truths.size());
+      for (std::size_t i = 1; i < track.truths.size(); ++i) {
+        const GroundTruth &last = track.truths[i - 1]->message, &next = track.truths[i]->message;
+        Interval& all = fleet_[i];
+        ++all.uavs;
+        all.moved_m = std::max(all.moved_m, moved_m(*track.info, last, next));
+        all.speed_m_s = std::max(all.speed_m_s, length(last.v_WB_m_s));
+      }
+    }
   }
 
   void run() {
@@ -70,13 +81,21 @@ class MotionCheck {
       for (std::size_t i = 1; i < track.truths.size(); ++i) {
         const Truth &last = *track.truths[i - 1], &next = *track.truths[i];
         check_jump(track, last.message, next);
-        if (is_free(track, last.message, next.message)) check_rates(track, last.message, next);
+        if (is_free(track, last.message, next.message, fleet_[i]))
+          check_rates(track, last.message, next);
         check_clearance(track, i, next);
       }
     }
   }
 
  private:
+  // Of all UAVs, the most between two messages.
+  struct Interval {
+    std::size_t uavs = 0;
+    double moved_m = 0.0;
+    double speed_m_s = 0.0;
+  };
+
   // No UAV moves faster than it can fly: at the greater of both speeds, of which the later one is
   // believed only as far as a hit explains it, and with all of its acceleration.
   void check_jump(const Track& track, const GroundTruth& last, const Truth& next) {
@@ -98,7 +117,8 @@ class MotionCheck {
   }
 
   // Whether nothing can have touched the UAV: then only its rotors, gravity and drag accelerate it.
-  bool is_free(const Track& track, const GroundTruth& last, const GroundTruth& next) const {
+  bool is_free(const Track& track, const GroundTruth& last, const GroundTruth& next,
+               const Interval& all) const {
     if (!record_.header.moves_by_forces) return false;
     if (!last.clearance_m || !next.clearance_m) {
       const auto touched = touched_.find(last.uav);
@@ -106,11 +126,8 @@ class MotionCheck {
              (touched == touched_.end() || touched->second > next.at);
     }
     double reach = reach_m(track, last, next) + moved_m(*track.info, last, next);
-    double other_m_s = record_.header.only_uavs_move ? 0.0 : kMostHit_m_s;
-    for (const auto& [uav, other] : tracks_)
-      if (const GroundTruth* there = other.at_or_after(last.at); there && &other != &track)
-        other_m_s = std::max(other_m_s, kMostHit_m_s + length(there->v_WB_m_s));
-    reach += other_m_s * seconds_between(last.at, next.at);
+    const bool is_alone = tracks_.size() == 1 && record_.header.only_uavs_move;
+    if (!is_alone) reach += (kMostHit_m_s + all.speed_m_s) * seconds_between(last.at, next.at);
     return std::min(*last.clearance_m, *next.clearance_m) > reach;
   }
 
@@ -139,7 +156,7 @@ class MotionCheck {
     const double turned_rad =
         std::max(length(last.w_WB_B_rad_s), length(next.message.w_WB_B_rad_s)) * dt_s;
     // Turns about several axes do not add up exactly. The engine's gyroscopic terms grow so, too.
-    if (most_rad_s2 > 0.0 && turned_rad < 1.0)
+    if (most_rad_s2 > 0.0)
       check("the rate of rotation", last.w_WB_B_rad_s, next.message.w_WB_B_rad_s,
             turn_rad(last, next.message), most_rad_s2, 1e-4 + turned_rad * turned_rad);
   }
@@ -150,14 +167,9 @@ class MotionCheck {
     if (last.clearance_m.has_value() != next.message.clearance_m.has_value())
       return report_.add(0, next, "the clearance is in some messages only");
     if (!last.clearance_m || !knows_shapes_ || !record_.header.only_uavs_move) return;
-    double most = 0.0;
-    for (const auto& [uav, other] : tracks_) {
-      if (&other == &track) continue;
-      if (i >= other.truths.size()) return;
-      most = std::max(most,
-                      moved_m(*other.info, other.truths[i - 1]->message, other.truths[i]->message));
-    }
-    most += moved_m(*track.info, last, next.message) + kRounding_m;
+    if (fleet_[i].uavs != tracks_.size()) return;
+    const double most = moved_m(*track.info, last, next.message) +
+                        (tracks_.size() > 1 ? fleet_[i].moved_m : 0.0) + kRounding_m;
     const double changed = std::abs(*next.message.clearance_m - *last.clearance_m);
     if (!(changed <= most))
       report_.add(0, next, "the clearance changes by {:.6g} m, but only {:.6g} m were flown",
@@ -166,6 +178,7 @@ class MotionCheck {
 
   const record::Record& record_;
   Report& report_;
+  std::vector<Interval> fleet_;  // before each message of the ground truth
   double step_s_;
   std::map<std::string, Track> tracks_;
   bool knows_shapes_ = true;

@@ -125,6 +125,16 @@ TEST(Audit, TheFirstRequestIsComparedWithTheStart) {
   EXPECT_EQ(growth_findings(record), without_start);
 }
 
+// By a whole number of readings, at least one.
+TEST(Audit, EtGrowsByTheReadingsOfAScriptedClock) {
+  for (const auto& [grown, findings] : {std::pair(2 * kStep, 1), {2 * kStep + kNs, 3}}) {
+    Record record = wall_clocked(grown, kSecond);
+    record.header.suts[0].clock = "scripted";
+    record.header.suts[0].computing = 2 * kStep;
+    EXPECT_EQ(growth_findings(record), findings);  // the first call is at ET 0
+  }
+}
+
 TEST(Audit, EtIsComparedOnlyWithKnownWallTimes) {
   Record record = wall_clocked(2 * kSecond, kSecond);
   record.interactions[1].message.wall_at_arrival = WallTime{};
@@ -213,6 +223,17 @@ TEST(Audit, FreeRunningIsNotSynchronised) {
   const Verdict verdict = audit(free_running());
   EXPECT_FALSE(verdict.synchronised);
   EXPECT_TRUE(verdict.passed()) << to_text(verdict);
+}
+
+TEST(Audit, WhatTakesEffectIsWhatWasCommanded) {
+  for (const bool is_free : {false, true}) {
+    Record record = is_free ? free_running() : generate({});
+    record.commands[5].message.vx_H_m_s *= -1.0;
+    EXPECT_EQ(rules_of(record), Rules{2});
+  }
+  Record record = generate({});
+  where(record, [](const Interaction& m) { return m.kind == record::kCommand; }).command.reset();
+  EXPECT_EQ(rules_of(record), Rules{0});
 }
 
 Interaction& first_reading(Record& record) {

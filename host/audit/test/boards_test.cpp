@@ -73,6 +73,28 @@ TEST(Boards, ANanosecondTooEarlyOrTooLateIsFound) {
   EXPECT_EQ(findings(unknown), 1u);
 }
 
+TEST(Boards, NamesOfBoardsBelongTogether) {
+  const auto rules = [](void (*alter)(record::Record&)) {
+    record::Record record = board_record(2, kSound);
+    alter(record);
+    Verdict verdict;
+    Report report(verdict);
+    check_boards(record, report);
+    return verdict.findings.empty() ? -1 : verdict.findings.front().rule;
+  };
+  EXPECT_EQ(rules([](record::Record& r) { r.header.boards.clear(); }), 0);
+  EXPECT_EQ(rules([](record::Record& r) { r.header.boards.push_back({"spare", 1}); }), 0);
+  EXPECT_EQ(rules([](record::Record& r) { r.header.suts[1].board.clear(); }), 5);
+}
+
+TEST(Boards, AProgramAloneOnItsCoreNeedsNoComputedTime) {
+  record::Record record =
+      board_record(2, {{"a", 2, 2, 2, true}, {"b", 2, 4, 4, true}, {"c", 9, 9, 9, true}}, 0);
+  record.interactions[0].message.request_at = from_ns<ExecTime>(4);
+  record.interactions[2].message.computed.reset();
+  EXPECT_EQ(findings(record), 0u);
+}
+
 /// Two SUTs on a real board; the ETs at which each stopped.
 record::Record stops_record(const std::vector<std::int64_t>& a,
                             const std::vector<std::int64_t>& b) {
@@ -94,6 +116,7 @@ TEST(Boards, AStopOfOneSutOfARealBoardIsFound) {
   EXPECT_EQ(findings(stops_record({1, 5, 9}, {1, 6, 9})), 2u);
   record::Record other = stops_record({1, 5, 9}, {1, 9});
   other.header.suts[1].board = "another";
+  other.header.boards.push_back({"another", 0, true});
   EXPECT_EQ(findings(other), 0u);
 }
 

@@ -307,6 +307,7 @@ const Planted kPlanted[] = {
     {"st_ahead_of_running_sut_at_end",
      {4},
      [](Record& r) {
+       r.footer->end = "time_limit";
        r.footer->et_at_end.back() = same_instant(r.footer->st_at_end) - kNs;
        for (Entry& entry : r.interactions) {
          Interaction& m = entry.message;
@@ -428,9 +429,11 @@ const Planted kPlanted[] = {
        truth.v_WB_m_s[0] -= 200.0;
      }},
     {"command_beyond_its_limits",
-     {0},
+     {0, 2},
      [](Record& r) { r.commands[3].message.vy_H_m_s = -100.001; }},
-    {"command_not_finite", {0}, [](Record& r) { r.commands[3].message.yaw_rate_rad_s = HUGE_VAL; }},
+    {"command_not_finite",
+     {0, 2},
+     [](Record& r) { r.commands[3].message.yaw_rate_rad_s = HUGE_VAL; }},
     {"annotation_out_of_order",
      {0},
      [](Record& r) {

@@ -64,6 +64,7 @@ class Sut {
     message.kind = record::kCommand;
     const std::int64_t acts = et_ + to_ns(latency_);
     message.effect_at = from_ns<SimTime>(ceil_ns(acts, to_ns(options_.step)));
+    message.command = {1, 0, 0, 0};
     message.grid_error = *message.effect_at - from_ns<SimTime>(acts);
   }
 

@@ -29,6 +29,9 @@ TEST(Recorder, WholeRecordIsTheSameEachTimeAndReadBack) {
   written.contacts = {{st_ms(50), 6, contact()}};
   written.stops = {{st_ms(50), 8, stop()}};
   written.footer = footer();
+  written.footer->topics = {{"/interactions", 4}, {"/task/a", 1},     {"/ground_truth/a", 1},
+                            {"/tf", 1},           {"/commands/a", 1}, {"/images/a/camera", 1},
+                            {"/contacts/a", 1},   {"/stops/a", 1}};
   const TemporaryFile file;
   write_whole_record(file.path());
   const TemporaryFile again;
@@ -44,7 +47,40 @@ TEST(Recorder, WholeRecordIsTheSameEachTimeAndReadBack) {
     EXPECT_EQ(read.ground_truth[0].order, 3U);
     EXPECT_EQ(read.stops[0].order, 8U);
     EXPECT_EQ(read.interactions[3].order, 9U) << "images count";
+    EXPECT_EQ(read.unloaded.size(), images ? 1U : 2U);
+    EXPECT_EQ(read.unloaded.at("/tf"), 1U);
   }
+}
+
+// With what these follow from, and what else the audit compares.
+TEST(Recorder, ModelsAndCommandsAreReadBack) {
+  Header written = header();
+  written.time_limit = Duration(5);
+  written.only_uavs_move = written.moves_by_forces = true;
+  written.suts[0].extent_m = 0.25;
+  written.suts[0].max_angular_acceleration_rad_s2 = 500.0;
+  written.suts[0].energy = {7200.0, 0.02, 0.9, {{0.0, 10.0}, {1.0, 12.6}}, 80.0, 2.0, 3.0, 4.0};
+  written.radio = {.model = "log_distance",
+                   .least_delay = Duration(7),
+                   .data_rate_bit_s = 6e6,
+                   .inbox_messages = 256,
+                   .access = "tdma",
+                   .queue_messages = 64};
+  written.radio.header_bytes = 36;
+  written.radio.tx_power_dbm = -15.5;
+  Interaction command = command_interaction();
+  command.command = {0.5, -0.25, 1.0 / 3.0, -0.0};
+  const TemporaryFile file;
+  {
+    const auto recorder = make_mcap_recorder(file.path());
+    recorder->write(written);
+    recorder->write(st_ms(40), command);
+  }
+  const Record read = read_record(file.path());
+  EXPECT_EQ(to_metadata(read.header), to_metadata(written));
+  EXPECT_EQ(read.header.radio, written.radio);
+  EXPECT_EQ(read.header.suts[0].energy, written.suts[0].energy);
+  EXPECT_EQ(read.interactions[0].message.command, command.command);
 }
 
 TEST(Recorder, RawImagesAreReadBackIfAskedFor) {

@@ -107,8 +107,8 @@ TEST_F(AuditOfAFlight, FindsWhatContradictsTheRestOfTheRecord) {
          std::erase_if(r.footer->topics, [](const auto& t) { return t.topic == "/contacts/uav1"; });
        }},
       {"contacts not reported", 0, [](Record& r) { r.header.reports_contacts = false; }},
-      {"time of a contact", 0, [](Record& r) { r.contacts[0].message.at -= milliseconds(100); }},
-      {"speed of a contact", 0, [](Record& r) { r.contacts[0].message.speed_m_s += 10.0; }},
+      {"time of a contact", 0, [](Record& r) { one_of(r.contacts).at -= milliseconds(100); }},
+      {"speed of a contact", 0, [](Record& r) { one_of(r.contacts).speed_m_s += 10.0; }},
       {"last annotation removed", 0, [](Record& r) { r.annotations.pop_back(); }},
       {"numbers of messages removed", 0, [](Record& r) { r.footer->topics.clear(); }},
       {"all commands removed", 0, [](Record& r) { r.commands.clear(); }},

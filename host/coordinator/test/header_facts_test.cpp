@@ -1,0 +1,41 @@
+#include "header_facts.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+namespace tether::coordinator {
+namespace {
+
+TEST(HeaderFacts, TheExtentReachesToTheFarthestPointOfAnyShape) {
+  sim::Link body;
+  EXPECT_EQ(extent_m(body), 0.0);
+  body.collisions.push_back({.name = "arm", .X_LC = {}, .geometry = sim::BoxGeometry{{6, 0, 8}}});
+  EXPECT_DOUBLE_EQ(extent_m(body), 5.0);
+  body.collisions.push_back({.name = "foot", .X_LC = {}, .geometry = sim::SphereGeometry{1.0}});
+  body.collisions.back().X_LC.p = {0, 6, 0};
+  EXPECT_DOUBLE_EQ(extent_m(body), 7.0);
+  body.collisions.push_back({.name = "hull", .X_LC = {}, .geometry = sim::MeshGeometry{}});
+  EXPECT_EQ(extent_m(body), 0.0) << "its vertices are not known";
+}
+
+TEST(HeaderFacts, OneModelThatIsNotStaticCanMove) {
+  sim::World world;
+  world.models = {{.name = "wall", .is_static = true}};
+  EXPECT_TRUE(only_uavs_move(world));
+  world.models.push_back({.name = "ball"});
+  EXPECT_FALSE(only_uavs_move(world));
+}
+
+TEST(HeaderFacts, AnIdealRadioHasNoChannel) {
+  radio::Settings settings;
+  EXPECT_EQ(describe(settings).model, "ideal");
+  EXPECT_EQ(describe(settings).access, "");
+  settings.model = radio::Model::kLogDistance;
+  settings.access = radio::Access::kTdma;
+  EXPECT_EQ(describe(settings).access, "tdma");
+  EXPECT_EQ(describe(settings).tx_power_dbm, settings.tx_power_dbm);
+}
+
+}  // namespace
+}  // namespace tether::coordinator
