@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <future>
 #include <mutex>
 #include <string>
@@ -49,9 +50,14 @@ std::unique_ptr<Vehicle> join() {
   return require(tether::client::connect(std::move(options)));
 }
 
-/// Arithmetic that no compiler can leave out, and memory of changing sizes.
+/// Arithmetic that no compiler can leave out, memory of changing sizes, and functions whose work
+/// depends on where on the stack their operands are.
 void work(std::uint64_t steps) {
   volatile std::uint64_t state = steps;
+  char buffer[3000];
+  std::memset(buffer, static_cast<int>(steps), sizeof buffer - 1);
+  buffer[sizeof buffer - 1] = 0;
+  state = state + std::strlen(buffer) + (std::memchr(buffer + 1, 0, sizeof buffer - 1) != nullptr);
   for (std::uint64_t i = 0; i < steps; ++i) state = state * 6364136223846793005u + i;
   const std::string text(static_cast<std::size_t>(state % 5000), 'x');
   if (text == "y") std::puts(text.c_str());
