@@ -1,7 +1,4 @@
-#include <algorithm>
-#include <iterator>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -14,18 +11,14 @@ namespace tether::report {
 
 namespace {
 
-/// Colours of a terminal for leads that begin so.
-constexpr std::pair<std::string_view, const char*> kColours[] = {
-    {"Fast enough", ";32"}, {"Sufficient", ";32"},  {"Not ", ";31"},
-    {"No answer", ";33"},   {"Goal missed", ";33"}, {"Void", ";33"}};
-
 /// Around the lead of an answer: bold, and on a terminal green, red or yellow by what it says.
 std::pair<std::string, std::string> marks_of(const std::string& lead, Markup markup) {
   if (markup == Markup::kPlain) return {};
   if (markup == Markup::kMarkdown) return {"**", "**"};
-  const auto found = std::ranges::find_if(
-      kColours, [&](const auto& colour) { return lead.starts_with(colour.first); });
-  return {fmt::format("\x1b[1{}m", found == std::end(kColours) ? "" : found->second), "\x1b[0m"};
+  const char* const colour = lead.starts_with("Fast enough")       ? "32"
+                             : lead.starts_with("Not fast enough") ? "31"
+                                                                   : "33";
+  return {fmt::format("\x1b[1;{}m", colour), "\x1b[0m"};
 }
 
 }  // namespace
