@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <tether/base/counted.h>
 #include <tether/base/text_table.h>
 #include <tether/os/shell_word.h>
 #include <tether/report/verdict.h>
@@ -131,11 +132,11 @@ std::string sentence_of(const Advice& advice, const Verdict& verdict) {
         return "One flight shows little. Fly a campaign of several seeds: `tether campaign`.";
       if (advice.flights == 0)
         return fmt::format("Fly more: the share is so near to {} that {} do not decide it.",
-                           kWanted, flights_text(lead.flown));
+                           kWanted, counted(lead.flown, "flight"));
       return fmt::format(
           "Fly more: if this share continues, {} decide (`trials` in the campaign's file, then "
           "`--resume`).",
-          flights_text(advice.flights));
+          counted(advice.flights, "flight"));
     case Kind::kSetLimit:
       return "Give a metric of the scenario a limit (such as `max_s` of `time_required`), or fly a "
              "mission with deadlines.";

@@ -1,3 +1,4 @@
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,13 +12,12 @@ namespace tether::report {
 
 namespace {
 
-/// Around the lead of an answer: bold, and on a terminal green, red or yellow by what it says.
-std::pair<std::string, std::string> marks_of(const std::string& lead, Markup markup) {
+/// Around the lead of an answer: bold, and on a terminal green, red or yellow by its ruling.
+std::pair<std::string, std::string> marks_of(std::optional<Ruling> ruling, Markup markup) {
   if (markup == Markup::kPlain) return {};
   if (markup == Markup::kMarkdown) return {"**", "**"};
-  const char* const colour = lead.starts_with("Fast enough")       ? "32"
-                             : lead.starts_with("Not fast enough") ? "31"
-                                                                   : "33";
+  const bool is_good = ruling == Ruling::kFastEnough || ruling == Ruling::kFastEnoughSoFar;
+  const char* const colour = is_good ? "32" : ruling == Ruling::kNotFastEnough ? "31" : "33";
   return {fmt::format("\x1b[1;{}m", colour), "\x1b[0m"};
 }
 
@@ -28,7 +28,7 @@ std::string answer_text(const std::vector<Answer>& answers, const std::vector<st
   const bool is_markdown = markup == Markup::kMarkdown;
   std::string text;
   for (const Answer& answer : answers) {
-    const auto [before, after] = marks_of(answer.lead, markup);
+    const auto [before, after] = marks_of(answer.ruling, markup);
     text += fmt::format("{}{}{}{}\n{}", before, answer.lead, after, answer.rest,
                         is_markdown ? "\n" : "");
   }

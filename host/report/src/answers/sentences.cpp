@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include <tether/base/counted.h>
 #include <tether/base/text_table.h>
 #include <tether/report/verdict.h>
 
@@ -50,7 +51,7 @@ std::string pace_text(const Pace& pace) {
 std::string counted(std::size_t count, const ConditionVerdict& condition) {
   if (condition.flown > 1 && condition.is_one_flight())
     return fmt::format("one flight, flown {} times,", condition.flown);
-  const std::string text = fmt::format("{} of {}", count, flights_text(condition.flown));
+  const std::string text = fmt::format("{} of {}", count, counted(condition.flown, "flight"));
   return condition.distinct == condition.flown
              ? text
              : fmt::format("{} ({} different ones)", text, condition.distinct);
@@ -116,7 +117,7 @@ std::string doubt_text(const FlightsInDoubt& doubt, const ConditionVerdict& cond
   const campaign::Doubt& largest = doubt.largest;
   const std::string where =
       condition.flown > 1
-          ? fmt::format(", at most, in {} of {}", doubt.flights, flights_text(condition.flown))
+          ? fmt::format(", at most, in {} of {}", doubt.flights, counted(condition.flown, "flight"))
           : "";
   return fmt::format(fmt::runtime(kDoubts[static_cast<std::size_t>(largest.kind)]),
                      fmt::arg("subject", largest.subject.empty() ? "the machine" : largest.subject),
@@ -149,17 +150,18 @@ std::string doubts_text(const ConditionVerdict& condition) {
         doubt.largest.kind == campaign::Doubt::Kind::kBusyMachine)
       text += " " + capital(doubt_text(doubt, condition)) + ".";
   if (condition.failed > 0 && condition.flown > 0)
-    text += fmt::format(" {} failed and {} not counted.", flights_text(condition.failed),
+    text += fmt::format(" {} failed and {} not counted.", counted(condition.failed, "flight"),
                         condition.failed == 1 ? "is" : "are");
   const std::size_t missing =
       condition.planned - std::min(condition.planned, condition.flown + condition.failed);
   if (missing > 0 && condition.flown + condition.failed > 0)
-    text += fmt::format(" {} ha{} no result.", flights_text(missing), missing == 1 ? "s" : "ve");
+    text +=
+        fmt::format(" {} ha{} no result.", counted(missing, "flight"), missing == 1 ? "s" : "ve");
   if (condition.throttled > 0)
     text += fmt::format(" The board was throttled in {}: it could be faster than this.",
-                        flights_text(condition.throttled));
+                        counted(condition.throttled, "flight"));
   if (condition.crashed > 0)
-    text += fmt::format(" A UAV crashed in {}.", flights_text(condition.crashed));
+    text += fmt::format(" A UAV crashed in {}.", counted(condition.crashed, "flight"));
   if (!condition.unreadable.empty())
     text += fmt::format(" The computing times are not known: {}.", condition.unreadable);
   return text;
@@ -182,12 +184,12 @@ std::string evidence_of(const ConditionVerdict& condition) {
     case Ruling::kVoid:
       return fmt::format(
           "{} of “{}” break{} the rules of time, so nothing is known of the computer ({}).",
-          flights_text(condition.unsound), condition.condition, condition.unsound == 1 ? "s" : "",
-          condition.reason);
+          counted(condition.unsound, "flight"), condition.condition,
+          condition.unsound == 1 ? "s" : "", condition.reason);
     case Ruling::kSetUpFailed:
       if (condition.planned == 1) return condition.reason + ".";
       return fmt::format("on “{}” {} failed without a result ({}).", condition.condition,
-                         flights_text(condition.failed), condition.reason);
+                         counted(condition.failed, "flight"), condition.reason);
     case Ruling::kUnseen: {
       std::vector<std::string> parts;
       for (const FlightsInDoubt& doubt : condition.doubts)
@@ -218,7 +220,7 @@ std::string evidence_of(const ConditionVerdict& condition) {
       return fmt::format(
           "“{}” is free-running (not synchronised): {} of {} seem{} to pass, which says nothing "
           "about the computer.",
-          condition.condition, condition.reached, flights_text(condition.flown),
+          condition.condition, condition.reached, counted(condition.flown, "flight"),
           condition.flown == 1 ? "s" : "");
   }
   return "";
@@ -286,12 +288,13 @@ std::vector<Answer> sweep_answers(const std::vector<Verdict>& points) {
       auto known = std::ranges::find(rulings, at.ruling, [](const auto& one) { return one.first; });
       if (known == rulings.end()) known = rulings.insert(rulings.end(), {at.ruling, {}});
       known->second.push_back(
-          fmt::format("{} ({} of {})", point.point, at.reached, flights_text(at.flown)));
+          fmt::format("{} ({} of {})", point.point, at.reached, counted(at.flown, "flight")));
     }
     for (const auto& [ruling, where] : rulings)
       answers.push_back({capital(name(ruling)),
                          fmt::format(": “{}” with {}.", points.front().conditions[i].condition,
-                                     joined_with_and(where))});
+                                     joined_with_and(where)),
+                         ruling});
   }
   if (auto differences = differences_between(points)) answers.push_back(*std::move(differences));
   return answers;
@@ -310,7 +313,7 @@ std::string missed_text(const MissedLimits& missed, bool of_one) {
       parts.push_back(fmt::format("{} more", missed.size() - kMostMissed));
       break;
     }
-    parts.push_back(of_one ? limit : fmt::format("{} ({})", limit, flights_text(count)));
+    parts.push_back(of_one ? limit : fmt::format("{} ({})", limit, counted(count, "flight")));
   }
   return joined_with_and(parts);
 }
@@ -326,7 +329,8 @@ std::vector<Answer> answers_on_flights(std::span<const campaign::TrialResult* co
 }
 
 Answer answer_of(const ConditionVerdict& condition) {
-  return {lead_of(condition), ": " + evidence_of(condition) + doubts_text(condition)};
+  return {lead_of(condition), ": " + evidence_of(condition) + doubts_text(condition),
+          condition.ruling};
 }
 
 std::vector<Answer> answers_of(const std::vector<Verdict>& points) {

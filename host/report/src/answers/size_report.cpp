@@ -148,7 +148,7 @@ std::vector<Answer> size_answers(const SizeReport& report) {
   if (copies > 0)
     answers.push_back({"Not counted", fmt::format(": {} more, each a copy of one at the same "
                                                   "slowdown, because its seed changes nothing.",
-                                                  flights_text(copies))});
+                                                  counted(copies, "flight"))});
   std::vector<const campaign::TrialResult*> trials;
   for (const campaign::TrialResult& trial : report.synchronised.trials) trials.push_back(&trial);
   std::ranges::move(answers_on_flights(trials, report.pace.unreadable),

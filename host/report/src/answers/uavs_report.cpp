@@ -111,7 +111,7 @@ std::vector<Answer> uavs_answers(const UavsReport& report) {
   if (copies > 0)
     answers.push_back({"Not counted", fmt::format(": {}, each a copy of another one, because its "
                                                   "seed changes nothing.",
-                                                  flights_text(copies))});
+                                                  counted(copies, "flight"))});
   std::vector<const campaign::TrialResult*> trials;
   for (const UavsPoint& point : report.points)
     for (const campaign::TrialResult& trial : point.trials) trials.push_back(&trial);

@@ -69,10 +69,6 @@ std::string rate_text(double hz) {
   return fixed(hz, hz < 9.95 ? 1 : 0);
 }
 
-std::string flights_text(std::size_t count) {
-  return fmt::format("{} flight{}", count, count == 1 ? "" : "s");
-}
-
 std::string distance_text(double margin) {
   if (margin == 0.0) return "at the limit";
   return fmt::format("{} {}", share_text(std::abs(margin)), margin < 0.0 ? "beyond" : "left");

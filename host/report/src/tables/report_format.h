@@ -40,8 +40,6 @@ std::string short_ms(double seconds);
 std::string share_text(double value);
 /// "9.0", "30"
 std::string rate_text(double hz);
-/// "1 flight", "3 flights"
-std::string flights_text(std::size_t count);
 /// Of a margin in shares of a limit: "12 % left", "3 % beyond", "at the limit".
 std::string distance_text(double margin);
 /// "a, b and c"

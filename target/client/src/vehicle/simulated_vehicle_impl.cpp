@@ -48,7 +48,7 @@ SimulatedVehicle::~SimulatedVehicle() {
 // Handlers that run while the clock is stopped would compute in no time, so they wait. The program
 // can still be ended and stopped, and fail.
 SimulatedVehicle::Call::Call(SimulatedVehicle& vehicle) {
-  if (vehicle.free_running_ == nullptr)
+  if (!vehicle.free_running_)
     signals_.emplace(std::initializer_list<int>{SIGINT, SIGTERM, SIGQUIT, SIGHUP, SIGTSTP, SIGTTIN,
                                                 SIGTTOU, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGTRAP,
                                                 SIGSYS, SIGABRT});

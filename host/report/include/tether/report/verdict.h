@@ -174,8 +174,9 @@ std::vector<Verdict> verdicts_of(const campaign::CampaignResults& results,
 
 /// A sentence.
 struct Answer {
-  std::string lead;  ///< which is to stand out: "Not fast enough"
-  std::string rest;  ///< begins with ": " or a space
+  std::string lead;                ///< which is to stand out: "Not fast enough"
+  std::string rest;                ///< begins with ": " or a space
+  std::optional<Ruling> ruling{};  ///< which the lead states; none: it states another fact
 };
 /// What `tether size` adds to an answer that rests on these flights: what those missed that did not
 /// reach the goal, and why no computing times are known (empty: they are).
