@@ -8,7 +8,7 @@ namespace {
 TEST(AnswerText, IsMarkedForItsReader) {
   const std::vector<Answer> answers = {{"Fast enough", ": a.", Ruling::kFastEnough},
                                        {"Not fast enough", ": b.", Ruling::kNotFastEnough},
-                                       {"No answer", ": c.", Ruling::kFailed}};
+                                       {"No answer", ": c.", Ruling::kSetUpFailed}};
   EXPECT_EQ(answer_text(answers, {"Type `x`."}, Markup::kPlain),
             "Fast enough: a.\nNot fast enough: b.\nNo answer: c.\n  → Type x.\n\n");
   EXPECT_EQ(
