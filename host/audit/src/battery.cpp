@@ -55,8 +55,8 @@ class Model {
   const EnergyInfo& info_;
 };
 
-// How much a SUT had computed at an instant: all of the time from a reply to the next request, or on
-// a shared board a part of it.
+// How much a SUT had computed at an instant: all of the time from a reply to the next request, or
+// on a shared board a part of it.
 class BusyTime {
  public:
   explicit BusyTime(const SutRow& row) {
