@@ -87,7 +87,10 @@ TEST_F(Fleet, ALostSutIsTheCauseWhateverIsInTransit) {
         kBarrier + "clock = \"scripted\"\ncomputing_ms = 1.3\n");
   const Output output = fly("out");
   EXPECT_EQ(output.code, 3);
-  EXPECT_NE(output.err.find("lost the SUT of UAV \"uav2\""), std::string::npos) << output.err;
+  const auto footer = read_record(folder_ / "out").footer;
+  ASSERT_TRUE(footer);
+  EXPECT_EQ(footer->end, "sut_lost");
+  EXPECT_NE(footer->reason.find("\"uav2\""), std::string::npos) << footer->reason;
   EXPECT_EQ(audit_code(folder_ / "out"), 0);
 }
 
