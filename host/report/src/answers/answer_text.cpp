@@ -15,7 +15,9 @@ namespace {
 std::pair<std::string, std::string> marks_of(const std::string& lead, Markup markup) {
   if (markup == Markup::kPlain) return {};
   if (markup == Markup::kMarkdown) return {"**", "**"};
-  const char* const colour = lead.starts_with("Fast enough")       ? "32"
+  const bool has_doubts = lead.find(", but ") != std::string::npos;
+  const char* const colour = has_doubts                            ? "33"
+                             : lead.starts_with("Fast enough")     ? "32"
                              : lead.starts_with("Not fast enough") ? "31"
                                                                    : "33";
   return {fmt::format("\x1b[1;{}m", colour), "\x1b[0m"};
