@@ -11,8 +11,6 @@
 namespace tether::report {
 namespace {
 
-constexpr double kSignificant = 0.05;
-
 // Decimals that show the interval's half width with one digit, or two where the first is below 5.
 int decimals_for(const campaign::MeanDifference& means) {
   const double scale = means.ci95 && means.ci95->high > means.ci95->low

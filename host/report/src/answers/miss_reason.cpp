@@ -24,7 +24,6 @@ namespace {
 using Evidence = MissReason::Evidence;
 
 constexpr double kSameCost = 1.1;  // of an image, from flight to flight
-constexpr double kLeastChance = 0.05;
 constexpr SimTime kBeforeAnyProgram{std::chrono::milliseconds(50)};
 constexpr double kEmpty = 0.01;  // share of the battery's capacity
 
@@ -92,7 +91,7 @@ bool reaches_more_often(const ConditionVerdict& a, const ConditionVerdict& b) {
   };
   const campaign::Count of_a{a.distinct_reached, a.distinct}, of_b{b.distinct_reached, b.distinct};
   if (of_a.of_them * of_b.all <= of_b.of_them * of_a.all) return false;
-  return (is_certain(a) && is_certain(b)) || campaign::fisher_exact(of_a, of_b) < kLeastChance;
+  return (is_certain(a) && is_certain(b)) || campaign::fisher_exact(of_a, of_b) < kSignificant;
 }
 
 bool costs_no_more(const Pace& image, const Pace& other) {

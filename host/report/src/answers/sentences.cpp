@@ -256,7 +256,6 @@ std::string lead_of(const ConditionVerdict& condition) {
 
 /// Of a sweep: how many pairs of its points differ in how often they reach the goal.
 std::optional<Answer> differences_between(const std::vector<Verdict>& points) {
-  constexpr double kSignificant = 0.05;
   std::vector<double> p_values;
   const auto reached = [](const ConditionVerdict& one) {
     return campaign::Count{one.distinct_reached, one.distinct};

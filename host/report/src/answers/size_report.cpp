@@ -238,7 +238,6 @@ bool add_flight(SizedCondition& to, const campaign::TrialResult& trial, double s
 }
 
 bool speed_matters(const SizedCondition& sized) {
-  constexpr double kLeastChance = 0.05;
   std::vector<sizing::Flight> flights = sized.flights;
   std::ranges::stable_sort(flights, {}, &sizing::Flight::slowdown);
   campaign::Count fast, slow;
@@ -248,7 +247,7 @@ bool speed_matters(const SizedCondition& sized) {
     half.of_them += flights[i].reached ? 1U : 0U;
   }
   return fast.of_them * slow.all > slow.of_them * fast.all &&
-         campaign::fisher_exact(fast, slow) < kLeastChance;
+         campaign::fisher_exact(fast, slow) < kSignificant;
 }
 
 sizing::Flight flight_of(const campaign::TrialResult& trial, double slowdown) {

@@ -76,7 +76,7 @@ std::optional<Pose> odometry_of(const nlohmann::json& note) {
 }
 
 /// Where the frame of odometry is, whose first note is this one.
-Pose frame_of(const Pose& first, const record::GroundTruth& truth) {
+Pose odometry_frame(const Pose& first, const record::GroundTruth& truth) {
   const double yaw_rad = yaw_of(truth.q_WB) - first.yaw_rad;
   return {placed({truth.p_WB_m[0], truth.p_WB_m[1]}, yaw_rad, -first.p.x_m, -first.p.y_m), yaw_rad};
 }
@@ -96,7 +96,7 @@ void add_odometry(Way& way, const PlottedRun& run,
     if (!pose) continue;
     if (!frame) {
       const auto after = std::ranges::upper_bound(truths, at, {}, &record::GroundTruth::at);
-      frame = frame_of(*pose, **(after == truths.begin() ? after : std::prev(after)));
+      frame = odometry_frame(*pose, **(after == truths.begin() ? after : std::prev(after)));
       way.odometry.emplace_back();
     }
     way.odometry.back().push_back(placed(frame->p, frame->yaw_rad, pose->p.x_m, pose->p.y_m));

@@ -11,6 +11,8 @@
 namespace tether::report {
 
 inline constexpr const char* kNone = "–";
+/// Below it, a p-value shows a difference.
+inline constexpr double kSignificant = 0.05;
 /// kWantedSuccess in words.
 inline constexpr const char* kWanted = "9 of 10";
 
