@@ -17,21 +17,12 @@ namespace {
 std::pair<std::string, std::string> marks_of(std::optional<Ruling> ruling, Markup markup) {
   if (markup == Markup::kPlain) return {};
   if (markup == Markup::kMarkdown) return {"**", "**"};
-<<<<<<< HEAD
   const bool is_good = ruling == Ruling::kFastEnough || ruling == Ruling::kFastEnoughSoFar;
   const char* const colour = !ruling                            ? ""
                              : is_good                          ? ";32"
                              : ruling == Ruling::kNotFastEnough ? ";31"
                                                                 : ";33";
   return {fmt::format("\x1b[1{}m", colour), "\x1b[0m"};
-=======
-  const bool has_doubts = lead.find(", but ") != std::string::npos;
-  const char* const colour = has_doubts                            ? "33"
-                             : lead.starts_with("Fast enough")     ? "32"
-                             : lead.starts_with("Not fast enough") ? "31"
-                                                                   : "33";
-  return {fmt::format("\x1b[1;{}m", colour), "\x1b[0m"};
->>>>>>> h-e
 }
 
 }  // namespace

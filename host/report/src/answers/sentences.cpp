@@ -246,12 +246,15 @@ const Words& words_of(Ruling ruling) {
   return kWords[static_cast<std::size_t>(ruling)];
 }
 
+bool leaves_out(const ConditionVerdict& condition) {
+  return is_sufficient(condition.ruling) && !condition.left_out.empty();
+}
+
 std::string lead_of(const ConditionVerdict& condition) {
   const Words& words = words_of(condition.ruling);
   const bool is_of_one = condition.is_one_flight() && !words.lead_of_one.empty();
   std::string lead(is_of_one ? words.lead_of_one : words.lead);
-  const bool leaves_out = is_sufficient(condition.ruling) && !condition.left_out.empty();
-  return leaves_out ? lead + ", but not all of the world is simulated" : lead;
+  return leaves_out(condition) ? lead + ", but not all of the world is simulated" : lead;
 }
 
 /// Of a sweep: how many pairs of its points differ in how often they reach the goal.
@@ -326,8 +329,9 @@ std::vector<Answer> answers_on_flights(std::span<const campaign::TrialResult* co
 }
 
 Answer answer_of(const ConditionVerdict& condition) {
-  return {lead_of(condition), ": " + evidence_of(condition) + doubts_text(condition),
-          condition.ruling};
+  Answer answer{lead_of(condition), ": " + evidence_of(condition) + doubts_text(condition)};
+  if (!leaves_out(condition)) answer.ruling = condition.ruling;
+  return answer;
 }
 
 std::vector<Answer> answers_of(const std::vector<Verdict>& points) {
