@@ -17,8 +17,8 @@ struct Living {
 };
 /// Never destroyed: objects may outlive the statics of this file.
 Living& living() {
-  static auto& living = *new Living;
-  return living;
+  static auto& all = *new Living;
+  return all;
 }
 
 void remove_quietly(const std::filesystem::path& folder) {

@@ -115,7 +115,6 @@ TEST(SdfWarning, CanChangeAVerdictForWhatMovesSomething) {
            std::string("<plugin name='p' filename='gz-sim-wind-effects-system'/>"),
            std::string("<plugin name='p' filename='gz-sim-'/>"),
            std::string("<plugin name='p' filename='-system'/>"),
-           std::string("<plugin name='p' filename=''/>"),
        })
     EXPECT_THAT(load_content(content).warnings,
                 ElementsAre(Field(&Warning::can_change_verdict, true)))
