@@ -28,7 +28,8 @@ std::vector<Block> blocks_of(const std::string& guide) {
     const bool is_fence = line.starts_with("```");
     if (is_fence && !is_inside) {
       std::smatch file;
-      blocks.push_back({line.substr(3), std::regex_match(before, file, kFile) ? file[1].str() : "", ""});
+      blocks.push_back(
+          {line.substr(3), std::regex_match(before, file, kFile) ? file[1].str() : "", ""});
     } else if (is_inside && !is_fence) {
       blocks.back().text += line + "\n";
     }
