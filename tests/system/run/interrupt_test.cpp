@@ -59,7 +59,7 @@ TEST(BeforeTheSutHasJoined, CtrlCEndsTheRun) {
 }
 
 // libsdformat cannot be stopped while it reads. With this world, it takes some ten seconds.
-TEST(WorldCheck, EndsAtOnceAndLeavesNothing) {
+TEST(InterruptedWorldCheck, EndsAtOnceAndLeavesNothing) {
   const TempFolder folder;
   std::string models;
   for (int i = 0; i < 4000; ++i)
