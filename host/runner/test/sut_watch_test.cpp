@@ -45,7 +45,7 @@ TEST(SutWatch, DoubtsThreadsWhoseTimesACpuClockAddsUp) {
   EXPECT_THAT(doubts_of(sut, {ClockKind::kCpu, 6.0}),
               ElementsAre(Doubt{Doubt::Kind::kParallelThreads, "uav1", 2.0}));
   EXPECT_THAT(doubts_of(sut, {ClockKind::kScripted}), IsEmpty());
-  const SutLooks hardly{.computing = seconds(1), .of_all_threads = milliseconds(1009)};
+  const SutLooks hardly{.computing = seconds(1), .of_all_threads = milliseconds(1099)};
   EXPECT_THAT(doubts_of(report(seconds(1), hardly), {ClockKind::kCpu}), IsEmpty());
 }
 
