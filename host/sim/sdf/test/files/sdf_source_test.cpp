@@ -60,9 +60,8 @@ TEST(SdfSource, RefusesWhatMakesTheLibraryThrow) {
     return bad_file_error([&] { ask_library({"f.sdf"}, [&]() -> int { throw exception; }); });
   };
   EXPECT_THAT(throwing(sdf::AssertionInternalError("f", 1, "a == b", "g", "wrong")).what(),
-              ::testing::HasSubstr("f.sdf: libsdformat cannot read it (SDF ASSERTION));
-  EXPECT_THROW(ask_library({"f.sdf"}, []() -> int {
-    throw std::bad_alloc(); }), std::bad_alloc);
+              ::testing::HasSubstr("f.sdf: libsdformat cannot read it ("));
+  EXPECT_THROW(ask_library({"f.sdf"}, []() -> int { throw std::bad_alloc(); }), std::bad_alloc);
 }
 
 TEST(SdfSource, PrintsNothing) {
