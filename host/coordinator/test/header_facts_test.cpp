@@ -21,9 +21,9 @@ TEST(HeaderFacts, TheExtentReachesToTheFarthestPointOfAnyShape) {
 
 TEST(HeaderFacts, OneModelThatIsNotStaticCanMove) {
   sim::World world;
-  world.models = {{.name = "wall", .is_static = true}};
+  world.models.emplace_back().is_static = true;
   EXPECT_TRUE(only_uavs_move(world));
-  world.models.push_back({.name = "ball"});
+  world.models.emplace_back();
   EXPECT_FALSE(only_uavs_move(world));
 }
 

@@ -89,7 +89,7 @@ TEST_F(Suts, NoteAnExitCodeThatContradictsTheReportedGoal) {
     return one;
   };
   EXPECT_THAT(suts_.await_exit({report("uav1", false), report("uav2", true), report("uav3", true)}),
-              ElementsAre(AllOf(HasSubstr("after it had finished: "), HasSubstr("" uav2 ""),
+              ElementsAre(AllOf(HasSubstr("after it had finished: "), HasSubstr("uav2"),
                                 HasSubstr("exited with code 1"))));
 }
 

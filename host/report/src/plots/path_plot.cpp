@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -84,22 +85,23 @@ Pose odometry_frame(const Pose& first, const record::GroundTruth& truth) {
 /// Each task has odometry of its own, which begins where the UAV truly is then.
 void add_odometry(Way& way, const PlottedRun& run,
                   const std::vector<const record::GroundTruth*>& truths) {
-  std::optional<Pose> frame;
+  Pose frame;
+  bool begins = true;
   for (const auto& [at, order, note] : run.record->annotations) {
     if (note.uav != run.uav) continue;
     const auto json = nlohmann::json::parse(note.json, nullptr, false);
     if (!json.is_object()) continue;
     const bool is_of_task = note.topic == "task" || note.topic == "mission";
-    if (is_of_task && json.value("event", nlohmann::json()) == "start") frame.reset();
+    if (is_of_task && json.value("event", nlohmann::json()) == "start") begins = true;
     if (note.topic != "odometry") continue;
     const std::optional<Pose> pose = odometry_of(json);
     if (!pose) continue;
-    if (!frame) {
+    if (std::exchange(begins, false)) {
       const auto after = std::ranges::upper_bound(truths, at, {}, &record::GroundTruth::at);
       frame = odometry_frame(*pose, **(after == truths.begin() ? after : std::prev(after)));
       way.odometry.emplace_back();
     }
-    way.odometry.back().push_back(placed(frame->p, frame->yaw_rad, pose->p.x_m, pose->p.y_m));
+    way.odometry.back().push_back(placed(frame.p, frame.yaw_rad, pose->p.x_m, pose->p.y_m));
   }
 }
 

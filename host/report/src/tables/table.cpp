@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kGap = 2;
 
 std::string padding(const std::string& text, std::size_t width) {
-  const std::size_t used = columns_of(text);
+  const std::size_t used = tether::columns_of(text);
   return std::string(width > used ? width - used : 0, ' ');
 }
 
@@ -45,13 +45,13 @@ std::vector<std::size_t> column_widths(const Table& table) {
   std::vector<std::size_t> widths(column_count(table), 0);
   for (const auto& row : table.rows) {
     for (std::size_t i = 0; i < row.size(); ++i)
-      widths[i] = std::max(widths[i], columns_of(row[i]));
+      widths[i] = std::max(widths[i], tether::columns_of(row[i]));
   }
   for (auto row = table.headings.rbegin(); row != table.headings.rend(); ++row) {
     std::size_t first = 0;
     for (const Heading& heading : *row) {
       const std::size_t have = span_width(widths, first, heading.columns);
-      const std::size_t need = columns_of(heading.text);
+      const std::size_t need = tether::columns_of(heading.text);
       if (need > have) widths[first + heading.columns - 1] += need - have;
       first += heading.columns;
     }

@@ -40,7 +40,7 @@ TEST(SizeReport, SaysThatABoundIsOutsideTheRange) {
               HasSubstr("0.6 × the computing time of “target” [below 1, above 10]"));
   report.boards = {{"slow", 20.0}, {"fast", 0.1}};
   for (const Board& board : report.boards)
-    EXPECT_EQ(verdict(board, report.synchronised.answer), BoardVerdict::kUndecided);
+    EXPECT_EQ(verdict(board, report.synchronised), BoardVerdict::kUndecided);
 }
 
 TEST(SizeReport, SaysWhatLimitsTheAnswer) {
