@@ -34,7 +34,7 @@ TEST(CommandLine, NamesWhatIsWrongInOneLineWithTheHelpOfItsCommand) {
       {{"tether", "run"}, {"scenario", "tether run --help"}},
       {{"tether", "run", "x", "y"}, {"argument 'y'", "tether run --help"}},
       {{"tether", "world", "check"}, {"world", "tether world check --help"}},
-      {{"tether", "run", "x", "--seed", "-1"}, {"--seed", "0 to 9007199254740992, but is '-1'"}},
+      {{"tether", "run", "x", "--seed", "-1"}, {"--seed", "0 to 2^53, but is '-1'"}},
       {{"tether", "run", "x", "--seed", "many"}, {"--seed", "'many'"}},
       {{"tether", "run", "x", "--slowdown", "nan"}, {"--slowdown", "0.001 to 10000"}},
       {{"tether", "size", "x", "--between", "5"}, {"--between", "tether size --help"}}};

@@ -42,7 +42,7 @@ TEST(Judge, ConditionsOnSignals) {
   for (const Case& c : std::vector<Case>{
            {R"(always = "altitude <= 9 m")", true, 1.0, 8.0, "8 m at ST 8.000 s"},
            {R"(always = "altitude <= 5 m")", false, -3.0, 5.1, "8 m at ST 8.000 s"},
-           {R"(never = "altitude >= 5 m")", false, -3.0, 5.1, "8 m"},
+           {R"(never = "altitude >= 5 m")", false, -3.0, 5.0, "8 m"},
            {R"(never = "altitude >= 900 cm")", true, 100.0, 8.0, "800 cm"},
            {R"(eventually = "altitude >= 5 m")", true, 3.0, 5.0, "8 m"},
            {R"(eventually = "altitude >= 9 m")", false, -1.0, 8.0, "8 m"},

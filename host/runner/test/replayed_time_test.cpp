@@ -20,6 +20,7 @@ class ReplayedTimeTest : public testing::Test {
     timing_.build_id = "0a";
     timing_.board = "pi";
     timing_.clock = "cpu";
+    timing_.builds[spec_.scenario.uavs[0].placement.name] = {{"argument 1", "a"}};
     timing_.runs = {{spec_.scenario.uavs[0].placement.name, 3, {{"finish", {{"a", Duration(5)}}}}}};
   }
   ReplayedTime load() {

