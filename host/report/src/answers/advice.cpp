@@ -31,11 +31,7 @@ std::string faster_advice(const ConditionVerdict& lead) {
                          ? "The program reads every image, so the computer may not be the cause. "
                          : "";
   text += "To see whether speed matters, fly on a faster computer";
-  const std::vector<std::string>& words = lead.size_arguments;
   const std::string size = size_command(lead, true);
-  if (!words.empty() && lead.condition != "host")
-    text += fmt::format(", such as `tether run {} --condition host`{}", os::shell_word(words[0]),
-                        size.empty() ? "" : ", or at several speeds");
   return text + (size.empty() ? "." : ": " + size);
 }
 

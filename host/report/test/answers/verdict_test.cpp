@@ -171,9 +171,8 @@ TEST(Verdict, SaysTheAnswerWithItsEvidenceAndWhatToDo) {
             "≤ 5 s (5 flights)); the camera is read 9.0 times a second instead of 30, and “detect” "
             "takes 81 % of the computing time. No faster condition was flown, so whether speed "
             "matters is not known.\n\n"
-            "- To see whether speed matters, fly on a faster computer, such as `tether run turn "
-            "--condition host`, or at several speeds: `tether size turn --condition target "
-            "--between 0.1,2`\n"
+            "- To see whether speed matters, fly on a faster computer: `tether size turn "
+            "--condition target --between 0.1,2`\n"
             "- Speed up “detect” first. Computing takes up to 110 ms per image, and the camera has "
             "one every 33 ms: it is 3.3 × too slow to read them all.\n\n");
   const std::string plain = verdict_text(verdicts, Markup::kPlain);
