@@ -14,9 +14,9 @@ namespace {
 // camera, and ten looks; 1 % is what two measurements of a CPU clock differ by.
 constexpr Duration kLeastDoubt = std::chrono::milliseconds(20);
 constexpr double kDoubtfulShare = 0.01;
-// Threads that hand over to each other are both runnable for a moment: on a busy machine, 4 % of
-// looks at a program with a thread for each 10 ms of work were seen to find two.
-constexpr double kDoubtfulThreads = 1.1;
+// Threads that hand over to each other are both runnable for a moment: on a busy machine, 4 to 10 %
+// of looks at such programs were seen to find two.
+constexpr double kDoubtfulThreads = 1.3;
 
 std::uint16_t port_of(const std::string& address) {
   std::uint16_t port = 0;

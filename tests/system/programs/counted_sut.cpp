@@ -50,14 +50,18 @@ std::unique_ptr<Vehicle> join() {
   return require(tether::client::connect(std::move(options)));
 }
 
-/// Arithmetic that no compiler can leave out, memory of changing sizes, and functions whose work
-/// depends on where on the stack their operands are.
+/// Functions whose work depends on where on the stack their operands are.
+std::size_t work_on_stack() {
+  char buffer[3000];
+  volatile char filling = 'x';
+  std::memset(buffer, filling, sizeof buffer - 1);
+  buffer[sizeof buffer - 1] = 0;
+  return std::strlen(buffer) + (std::memchr(buffer + 1, 0, sizeof buffer - 1) != nullptr ? 1 : 0);
+}
+
+/// Arithmetic that no compiler can leave out, and memory of changing sizes.
 void work(std::uint64_t steps) {
   volatile std::uint64_t state = steps;
-  char buffer[3000];
-  std::memset(buffer, static_cast<int>(steps), sizeof buffer - 1);
-  buffer[sizeof buffer - 1] = 0;
-  state = state + std::strlen(buffer) + (std::memchr(buffer + 1, 0, sizeof buffer - 1) != nullptr);
   for (std::uint64_t i = 0; i < steps; ++i) state = state * 6364136223846793005u + i;
   const std::string text(static_cast<std::size_t>(state % 5000), 'x');
   if (text == "y") std::puts(text.c_str());
@@ -200,6 +204,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "counted_sut: the daemon computed in no time\n");
     return 5;
   }
+  if (work_on_stack() != 3000) return 6;
   fly(*vehicle, mode == "slower" ? 12 : 10);
   // Meets the worker's next waking.
   if (mode == "meanwhile")

@@ -73,6 +73,7 @@ class AuditOfAFlight : public testing::Test {
   Record fly(const std::string& mode, std::vector<Substitution> changes,
              const std::string& condition = "host") {
     changes.push_back(kScripted);
+    changes.emplace_back("kind = \"time_required\"", "kind = \"time_required\"\nuav = \"uav1\"");
     const auto scenario = write_hover_scenario(folder_.path(), mode, changes);
     const Output output = run(
         tether({"run", scenario, "--condition", condition, "--quiet", "--out", folder_ / "out"}));

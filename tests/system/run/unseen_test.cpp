@@ -14,7 +14,7 @@ class Unseen : public testing::Test {
   nlohmann::json doubts_of(const std::string& mode,
                            const std::vector<Substitution>& substitutions = {}) {
     const auto scenario = write_hover_scenario(folder_.path(), mode, substitutions);
-    const Output flown = run(tether({"run", scenario, "--overwrite", "--out", folder_ / "out"}));
+    const Output flown = run(tether({"run", scenario, "--force", "--out", folder_ / "out"}));
     EXPECT_EQ(flown.code, 0) << flown.err;
     const auto this_run = read_result(folder_ / "out").at("this_run");
     nlohmann::json doubts = nlohmann::json::array();
