@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include <tether/base/error.h>
+#include <tether/base/text_table.h>
 #include <tether/campaign/campaign_results.h>
 #include <tether/campaign/result.h>
 #include <tether/os/terminal.h>
@@ -111,7 +112,8 @@ std::string rendered(const ReportOptions& options) {
   const report::Markup markup = is_markdown           ? report::Markup::kMarkdown
                                 : options.out.empty() ? markup_of_stdout()
                                                       : report::Markup::kPlain;
-  return report::verdict_text(verdicts, markup) + joined(tables, is_markdown);
+  const std::string text = report::verdict_text(verdicts, markup) + joined(tables, is_markdown);
+  return is_markdown ? text : wrapped(text, os::text_columns(STDOUT_FILENO));
 }
 
 }  // namespace
@@ -120,9 +122,7 @@ int report(const ReportOptions& options, const std::stop_token&) {
   const std::string text = rendered(options);
   std::filesystem::path out = options.out;
   if (out.empty() && options.format == kHtml) out = options.folder / campaign::kReportFile;
-  if (out.empty() && options.format == "text") {
-    print(text);
-  } else if (out.empty()) {
+  if (out.empty()) {
     fmt::print("{}", text);
   } else {
     os::write_file_atomically(out, text);
