@@ -12,8 +12,8 @@ namespace {
 
 // A wait of 20 ms is then seen ten times.
 constexpr Duration kLookPeriod = std::chrono::milliseconds(2);
-// A look takes some 20 µs. Programs with many threads are looked at more rarely, so that looking
-// takes 2 % of a core at most, but often enough for a wait of a second.
+// A look takes some 20 µs for each thread. Programs with many threads are looked at more rarely, so
+// that looking takes 2 % of a core at most, but often enough for a wait of a second.
 constexpr int kPeriodPerCost = 50;
 constexpr Duration kLongestPeriod = std::chrono::milliseconds(50);
 // A SUT sends no more at once, unless it floods the coordinator.
