@@ -59,7 +59,7 @@ std::string shipped_kind(const CLI::App& command) {
 /// Shell code that prints the names below the heading "Scenarios" of `tether list`.
 std::string list_names(const std::string& program, const std::string& kind) {
   return program + " list 2>/dev/null | awk 'tolower($1) == \"" + kind +
-         "s\" {on = 1; next} /^[^ ]/ || !NF {on = 0} on {print $1}'";
+         "s\" {on = 1; next} /^[^ ]/ || !NF {on = 0} on && /^  [^ ]/ {print $1}'";
 }
 
 /// The parts of the scripts for bash and zsh, which follow the words in the same way.

@@ -125,7 +125,7 @@ int code_of(const report::SizeReport& report) {
   const sizing::Answer& answer = report.synchronised.answer;
   const bool is_answered =
       report.boards.empty()
-          ? answer.is_narrow
+          ? answer.is_narrow && !report::has_unseen_time(report)
           : std::ranges::all_of(report.boards, [&](const report::Board& board) {
               return report::verdict(board, report.synchronised) == report::BoardVerdict::kSuffices;
             });

@@ -151,7 +151,10 @@ int find_uavs(const SizeOptions& options, const std::stop_token& stop) {
       {report::uavs_answers(report), report::uavs_advice(report), report::uavs_json(report),
        report::uavs_plot(report), report::uavs_page(report), report::to_junit(report, out)},
       out, options.junit);
-  return report.answer.is_decided() ? 0 : 1;
+  const bool is_unseen = std::ranges::any_of(report.points, [](const report::UavsPoint& point) {
+    return std::ranges::any_of(point.trials, &campaign::TrialResult::has_unseen_time);
+  });
+  return report.answer.is_decided() && !is_unseen ? 0 : 1;
 }
 
 }  // namespace tether::app

@@ -108,10 +108,17 @@ void require_fit(const TimingOptions& options) {
 int print_change(const timing::Timing& now, const TimingOptions& options) {
   const timing::Timing before = read_any(options.against);
   timing::require_scenario(before, now.scenario, options.against);
-  if (now.board != before.board || now.clock != before.clock)
-    complain(fmt::format(
-        "warning: measured on \"{}\" with the clock \"{}\", before on \"{}\" with \"{}\"",
-        now.board, now.clock, before.board, before.clock));
+  if (now.board != before.board || now.clock != before.clock) {
+    const std::string differs =
+        fmt::format("measured on \"{}\" with the clock \"{}\", before on \"{}\" with \"{}\"",
+                    now.board, now.clock, before.board, before.clock);
+    if (options.limit_percent)
+      throw Error(ErrorCode::kBadFile, {options.against},
+                  "cannot be held against a limit: " + differs +
+                      ". Compare runs of one kind, or leave --limit out")
+          .about(now.board);
+    complain("warning: " + differs);
+  }
   const timing::Comparison comparison = timing::compare(now, before);
   std::optional<double> limit;
   if (options.limit_percent) limit = *options.limit_percent / 100.0;

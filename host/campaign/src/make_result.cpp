@@ -126,6 +126,8 @@ std::string why_missed(const judge::ClauseVerdict& clause) {
 }
 
 std::string why_missed(const TrialResult& result) {
+  for (const UavEnergy& energy : result.energy)
+    if (energy.is_empty()) return fmt::format("the battery of '{}' is empty", energy.uav);
   for (const SutResult& sut : result.suts) {
     if (std::string why = why_missed(sut); !why.empty()) return why;
   }

@@ -323,6 +323,11 @@ int exit_code(Outcome outcome) {
   return kCodes[static_cast<std::size_t>(outcome)];
 }
 
+bool TrialResult::has_unseen_time() const {
+  return std::ranges::any_of(
+      this_run.doubts, [](const Doubt& doubt) { return doubt.kind != Doubt::Kind::kBusyMachine; });
+}
+
 const MetricValue* TrialResult::find_metric(std::string_view metric) const {
   const auto found = std::ranges::find(metrics, metric, &MetricValue::name);
   return found == metrics.end() ? nullptr : &*found;

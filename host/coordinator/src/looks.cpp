@@ -50,7 +50,9 @@ void Coordinator::Impl::look_at_suts() {
   if (!hooks_.threads_of || !running_) return;
   const WallTime now = host_clock_();
   if (now < next_look_) return;
-  const Duration represented = look_period_ * ((now - next_look_) / look_period_ + 1);
+  const Duration passed = look_period_ * ((now - next_look_) / look_period_ + 1);
+  // If this process was late itself, nothing is known of the time in which it did not look.
+  const Duration represented = look_period_;
   struct Look {
     Session& session;
     WallTime since;
@@ -63,7 +65,7 @@ void Coordinator::Impl::look_at_suts() {
     session.is_hidden = !states;
     if (states) looks.push_back({session, session.computes_since, *states});
   }
-  next_look_ += represented;
+  next_look_ += passed;
   if (looks.empty()) return;
   // One that was interrupted changes little.
   look_period_ = std::clamp(kPeriodPerCost * (host_clock_() - now), kLookPeriod,

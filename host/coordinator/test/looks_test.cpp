@@ -54,6 +54,13 @@ TEST_F(Looks, AddUpToTheTimeThatASutWaits) {
   EXPECT_EQ(looks.of_all_threads, 2 * looks.computing);
 }
 
+// What happened in the second in which the coordinator did not look is not known.
+TEST_F(Looks, CountOncePerLookHoweverLateItIs) {
+  at_look_ = [this] { now_ += 1s; };
+  length_ = 10s;
+  EXPECT_LT(of_silent_sut().waiting, 1s);
+}
+
 TEST_F(Looks, IgnoreASutThatIsHalted) {
   states_ = {.runnable = 0, .is_halted = true};
   EXPECT_EQ(of_silent_sut().waiting, 0s);

@@ -79,6 +79,11 @@ bool is_faster(const Compared& other, const Compared& missed) {
   return costs && costs->own_s > kSameCost * costs->other_s;
 }
 
+/// Whether its flights say anything of a computer.
+bool is_evidence(const ConditionVerdict& one) {
+  return one.ruling > Ruling::kUnseen && one.ruling < Ruling::kFreeRunning;
+}
+
 bool is_instant(const Compared& one) {
   return one.pace() && one.pace()->speed.is_instant();
 }
@@ -136,7 +141,7 @@ std::string known_cause(const campaign::TrialResult& flight, const std::optional
       return fmt::format("{} hits “{}” at ST {:.3f} s, before a program can act", own.uav,
                          own.hardest->with, to_seconds(own.hardest->at));
   for (const campaign::UavEnergy& energy : flight.energy)
-    if (flight.end == campaign::kEndBatteryEmpty && energy.charge_from < kEmpty)
+    if (energy.is_empty() && energy.charge_from < kEmpty)
       return fmt::format("the battery of {} is at {:.2g} % at the start", energy.uav,
                          100.0 * energy.charge_from);
   if (const judge::ClauseVerdict* clause = of_forgotten_task(flight)) return clause->limited_by;
@@ -145,11 +150,18 @@ std::string known_cause(const campaign::TrialResult& flight, const std::optional
   return "";
 }
 
+/// Whether times between calls contain what a program waits in between, which no computer shortens.
+bool measures_waits(const Pace& pace) {
+  return std::ranges::any_of(pace.speed.programs, [](const Speed::Program& program) {
+    return program.clock == "wall" || program.clock == "unstamped";
+  });
+}
+
 /// A missed limit on a time that contains the computing of an image, which alone takes longer;
 /// empty: there is none.
 std::string limit_below_computing(const campaign::TrialResult& flight,
                                   const std::optional<Pace>& pace) {
-  if (!pace || pace->camera.empty()) return "";
+  if (!pace || pace->camera.empty() || measures_waits(*pace)) return "";
   for (const judge::ClauseVerdict& clause : flight.clauses) {
     if (clause.met || clause.quantiles.empty() || !clause.limit) continue;
     const double unit_s = clause.unit == "ms" ? 1e-3 : 1.0;
@@ -193,7 +205,7 @@ std::string comparison_text(const Compared& other, const Compared& missed) {
 MissReason reason_of(const Compared& missed, const std::vector<Compared>& all) {
   std::vector<const Compared*> faster;
   for (const Compared& other : all)
-    if (is_faster(other, missed)) faster.push_back(&other);
+    if (is_evidence(*other.verdict) && is_faster(other, missed)) faster.push_back(&other);
   // The slowest first: the least that would do.
   std::ranges::stable_sort(faster, std::greater<>{}, [&](const Compared* other) {
     return costs_of(*missed.pace(), *other->pace())->other_s;

@@ -250,11 +250,24 @@ bool leaves_out(const ConditionVerdict& condition) {
   return is_sufficient(condition.ruling) && !condition.left_out.empty();
 }
 
+std::string left_out_in_lead(const ConditionVerdict& condition) {
+  return leaves_out(condition) ? ", but not all of the world is simulated" : "";
+}
+
 std::string lead_of(const ConditionVerdict& condition) {
   const Words& words = words_of(condition.ruling);
   const bool is_of_one = condition.is_one_flight() && !words.lead_of_one.empty();
   std::string lead(is_of_one ? words.lead_of_one : words.lead);
-  return leaves_out(condition) ? lead + ", but not all of the world is simulated" : lead;
+  return lead + left_out_in_lead(condition);
+}
+
+/// Of one of several points with the same ruling: what it rests on, in sentences.
+std::string cause_text(const ConditionVerdict& condition) {
+  if (condition.ruling == Ruling::kVoid || condition.ruling == Ruling::kSetUpFailed)
+    return fmt::format(" The first reason: {}.", condition.reason);
+  if (condition.ruling == Ruling::kUnseen) return " " + capital(evidence_of(condition));
+  if (condition.ruling == Ruling::kOtherReason) return reason_text(*condition.miss);
+  return condition.left_out.empty() ? "" : left_out_text(condition);
 }
 
 /// Of a sweep: how many pairs of its points differ in how often they reach the goal.
@@ -282,22 +295,39 @@ std::optional<Answer> differences_between(const std::vector<Verdict>& points) {
 std::vector<Answer> sweep_answers(const std::vector<Verdict>& points) {
   std::vector<Answer> answers = sufficient_factors(points);
   for (std::size_t i = 0; i < points.front().conditions.size(); ++i) {
-    std::vector<std::pair<Ruling, std::vector<std::string>>> rulings;
+    struct Alike {
+      const ConditionVerdict* first;
+      std::vector<std::string> where{};
+    };
+    std::vector<Alike> rulings;
     for (const Verdict& point : points) {
       const ConditionVerdict& at = point.conditions[i];
-      auto known = std::ranges::find(rulings, at.ruling, [](const auto& one) { return one.first; });
-      if (known == rulings.end()) known = rulings.insert(rulings.end(), {at.ruling, {}});
-      known->second.push_back(
+      auto known = std::ranges::find_if(rulings, [&](const Alike& one) {
+        return one.first->ruling == at.ruling && leaves_out(*one.first) == leaves_out(at);
+      });
+      if (known == rulings.end()) known = rulings.insert(rulings.end(), Alike{&at});
+      known->where.push_back(
           fmt::format("{} ({} of {})", point.point, at.reached, counted(at.flown, "flight")));
     }
-    for (const auto& [ruling, where] : rulings)
-      answers.push_back({capital(name(ruling)),
-                         fmt::format(": “{}” with {}.", points.front().conditions[i].condition,
-                                     joined_with_and(where)),
-                         ruling});
+    for (const auto& [first, where] : rulings) {
+      Answer answer{capital(name(first->ruling)) + left_out_in_lead(*first),
+                    fmt::format(": “{}” with {}.{}", first->condition, joined_with_and(where),
+                                cause_text(*first))};
+      if (!leaves_out(*first)) answer.ruling = first->ruling;
+      answers.push_back(std::move(answer));
+    }
   }
   if (auto differences = differences_between(points)) answers.push_back(*std::move(differences));
   return answers;
+}
+
+campaign::ConditionResults results_of(const std::string& condition,
+                                      std::span<const campaign::TrialResult* const> trials) {
+  campaign::ConditionResults results;
+  results.condition = condition;
+  results.planned = trials.size();
+  for (const campaign::TrialResult* trial : trials) results.trials.push_back(*trial);
+  return results;
 }
 
 }  // namespace
@@ -318,9 +348,21 @@ std::string missed_text(const MissedLimits& missed, bool of_one) {
   return joined_with_and(parts);
 }
 
+std::optional<Answer> unseen_answer(const std::string& condition,
+                                    std::span<const campaign::TrialResult* const> trials) {
+  const ConditionVerdict all = verdict_of(results_of(condition, trials));
+  if (all.ruling != Ruling::kUnseen) return std::nullopt;
+  return answer_of(all);
+}
+
 std::vector<Answer> answers_on_flights(std::span<const campaign::TrialResult* const> trials,
                                        const std::string& unreadable) {
   std::vector<Answer> answers;
+  const ConditionVerdict all = verdict_of(results_of("", trials));
+  if (!all.left_out.empty())
+    answers.push_back({"Not all of the world is simulated", "." + left_out_text(all)});
+  if (const FlightsInDoubt* busy = all.doubt(campaign::Doubt::Kind::kBusyMachine))
+    answers.push_back({"Busy machine", ": " + doubt_text(*busy, all) + "."});
   if (const MissedLimits missed = missed_limits(trials); !missed.empty())
     answers.push_back({"Missed", ": " + missed_text(missed) + "."});
   if (!unreadable.empty())

@@ -114,15 +114,25 @@ std::vector<CurvePoint> curve_points(const sizing::SuccessCurve& curve, double l
 
 BoardVerdict verdict(const Board& board, const SizedCondition& sized) {
   const sizing::Answer& answer = sized.answer;
-  if (answer.is_below && !speed_matters(sized)) return BoardVerdict::kUndecided;
+  if (std::ranges::any_of(sized.trials, &campaign::TrialResult::has_unseen_time) ||
+      (answer.is_below && !speed_matters(sized)))
+    return BoardVerdict::kUndecided;
   const double low = board.low.value_or(board.slowdown), high = board.high.value_or(board.slowdown);
   if (high <= answer.threshold.low && !answer.is_below) return BoardVerdict::kSuffices;
   if (low >= answer.threshold.high && !answer.is_above) return BoardVerdict::kDoesNot;
   return BoardVerdict::kUndecided;
 }
 
+bool has_unseen_time(const SizeReport& report) {
+  return std::ranges::any_of(report.synchronised.trials, &campaign::TrialResult::has_unseen_time);
+}
+
 std::vector<Answer> size_answers(const SizeReport& report) {
   const sizing::Answer& answer = report.synchronised.answer;
+  std::vector<const campaign::TrialResult*> trials;
+  for (const campaign::TrialResult& trial : report.synchronised.trials) trials.push_back(&trial);
+  if (auto unseen = unseen_answer(report.synchronised.condition, trials))
+    return {*std::move(unseen)};
   std::vector<Answer> answers = {main_answer(report)};
   for (const Board& board : report.boards)
     answers.push_back(board_answer(board, report.synchronised));
@@ -145,8 +155,6 @@ std::vector<Answer> size_answers(const SizeReport& report) {
                          ? fmt::format("no more than {} were allowed",
                                        counted(report.most_flights, "flight"))
                          : "slowdowns in between could not be decided")});
-  std::vector<const campaign::TrialResult*> trials;
-  for (const campaign::TrialResult& trial : report.synchronised.trials) trials.push_back(&trial);
   std::ranges::move(answers_on_flights(trials, report.pace.unreadable),
                     std::back_inserter(answers));
   if (copies > 0)
@@ -165,6 +173,10 @@ std::vector<std::string> size_sentences(const SizeReport& report) {
 std::vector<std::string> size_advice(const SizeReport& report) {
   const sizing::Answer& answer = report.synchronised.answer;
   std::vector<std::string> advice;
+  if (has_unseen_time(report))
+    return {
+        "Find out what the program waits for, or which threads it has: fly one flight with "
+        "`tether run`, which says what to do."};
   if (!answer.is_narrow) advice.emplace_back("Fly more: `--max-trials`, with `--resume`.");
   const bool is_short =
       answer.is_below || std::ranges::any_of(report.boards, [&](const Board& board) {

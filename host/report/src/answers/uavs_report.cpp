@@ -90,6 +90,10 @@ std::size_t flights_of(const UavsReport& report) {
 }
 
 std::vector<Answer> uavs_answers(const UavsReport& report) {
+  std::vector<const campaign::TrialResult*> trials;
+  for (const UavsPoint& point : report.points)
+    for (const campaign::TrialResult& trial : point.trials) trials.push_back(&trial);
+  if (auto unseen = unseen_answer(report.condition, trials)) return {*std::move(unseen)};
   std::vector<Answer> answers = {
       {lead_of(report),
        fmt::format(" (“{}” under “{}”, {} of the flights wanted): {}; {}; {}.", report.board,
@@ -112,9 +116,6 @@ std::vector<Answer> uavs_answers(const UavsReport& report) {
     answers.push_back({"Not counted", fmt::format(": {}, each a copy of another one, because its "
                                                   "seed changes nothing.",
                                                   counted(copies, "flight"))});
-  std::vector<const campaign::TrialResult*> trials;
-  for (const UavsPoint& point : report.points)
-    for (const campaign::TrialResult& trial : point.trials) trials.push_back(&trial);
   std::ranges::move(answers_on_flights(trials, report.pace.unreadable),
                     std::back_inserter(answers));
   return answers;

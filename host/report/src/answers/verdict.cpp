@@ -40,7 +40,9 @@ std::vector<std::string> missed_in(const campaign::TrialResult& trial) {
   std::vector<std::string> missed;
   if (has_crash(trial)) missed.emplace_back("no crash");
   if (trial.end == campaign::kEndTimeLimit) missed.emplace_back("the time limit");
-  if (trial.end == campaign::kEndBatteryEmpty) missed.emplace_back("the battery");
+  if (trial.end == campaign::kEndBatteryEmpty ||
+      std::ranges::any_of(trial.energy, &campaign::UavEnergy::is_empty))
+    missed.emplace_back("the battery");
   for (const judge::ClauseVerdict& clause : trial.clauses)
     if (!clause.met) missed.push_back(fmt::format("“{}”", clause.name));
   for (const campaign::MetricValue& metric : trial.metrics)
@@ -100,6 +102,14 @@ void count(ConditionVerdict& verdict, const campaign::TrialResult& trial) {
     compare(fmt::format("“{}”", clause.name), margin_of(clause));
   if (!worst) return;
   if (!verdict.closest || worst->second < verdict.closest->second) verdict.closest = worst;
+  // A flight that missed what has no margin, such as a crash, is not near to any limit.
+  const auto is_missed_alone = [](const judge::ClauseVerdict& one) {
+    return !one.met && !one.margin;
+  };
+  const bool is_by_margins = trial.outcome == campaign::Outcome::kGoalReached ||
+                             (worst->second < 0.0 && !has_crash(trial) &&
+                              std::ranges::none_of(trial.clauses, is_missed_alone));
+  if (!is_by_margins) return;
   if (!verdict.tightest || std::abs(worst->second) < std::abs(verdict.tightest->second))
     verdict.tightest = worst;
 }
@@ -116,9 +126,7 @@ Ruling ruling_of(const ConditionVerdict& verdict, const campaign::ConditionResul
   if (verdict.unsound > 0) return Ruling::kVoid;
   if (verdict.flown == 0) return verdict.failed > 0 ? Ruling::kSetUpFailed : Ruling::kUndecided;
   if (std::ranges::any_of(trials, is_free_running)) return Ruling::kFreeRunning;
-  if (verdict.doubt(campaign::Doubt::Kind::kUnseenWait) != nullptr ||
-      verdict.doubt(campaign::Doubt::Kind::kParallelThreads) != nullptr)
-    return Ruling::kUnseen;
+  if (std::ranges::any_of(trials, &campaign::TrialResult::has_unseen_time)) return Ruling::kUnseen;
   const bool all = verdict.reached == verdict.flown;
   if (all && std::ranges::none_of(trials, has_limit)) return Ruling::kNothingToDecide;
   if (is_within_spread(verdict)) return Ruling::kUndecided;
@@ -128,6 +136,8 @@ Ruling ruling_of(const ConditionVerdict& verdict, const campaign::ConditionResul
   // A board that was throttled could do better.
   return is_missed && verdict.throttled == 0 ? Ruling::kGoalMissed : Ruling::kUndecided;
 }
+
+}  // namespace
 
 ConditionVerdict verdict_of(const campaign::ConditionResults& results) {
   ConditionVerdict verdict{.condition = results.condition, .planned = results.planned};
@@ -150,6 +160,8 @@ ConditionVerdict verdict_of(const campaign::ConditionResults& results) {
   verdict.ruling = ruling_of(verdict, results);
   return verdict;
 }
+
+namespace {
 
 /// How many flights would decide, if their share stays what it is. 0: very many.
 std::size_t flights_to_decide(const ConditionVerdict& verdict) {

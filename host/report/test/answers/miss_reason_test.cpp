@@ -138,6 +138,19 @@ TEST_F(MissReasons, AreSpeedIfComputingAloneTakesLongerThanALimit) {
   EXPECT_EQ(ruling(board), Ruling::kGoalMissed) << "a jitter does not contain the computing";
 }
 
+TEST_F(MissReasons, AreNotSpeedByAWallClockThatMeasuresWaitsToo) {
+  Pace pace = measured(0.2);
+  pace.speed.programs[0].clock = "wall";
+  const std::size_t board = add("board", 0, 1, pace);
+  trials(board)[0].clauses = {{.uav = "uav1",
+                               .name = "quick",
+                               .margin = -60.0,
+                               .unit = "ms",
+                               .quantiles = {190.0, 210.0, 230.0},
+                               .limit = 150.0}};
+  EXPECT_EQ(ruling(board), Ruling::kGoalMissed);
+}
+
 TEST_F(MissReasons, AreKnownOfWhatHasNothingToDoWithSpeed) {
   struct Cause {
     const char* text;

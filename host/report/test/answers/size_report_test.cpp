@@ -43,6 +43,18 @@ TEST(SizeReport, SaysThatABoundIsOutsideTheRange) {
     EXPECT_EQ(verdict(board, report.synchronised), BoardVerdict::kUndecided);
 }
 
+TEST(SizeReport, HasNoAnswerIfTimePassesUnseen) {
+  SizeReport report = sample_size();
+  report.boards = {{"fast", 0.1}};
+  EXPECT_EQ(verdict(report.boards[0], report.synchronised), BoardVerdict::kSuffices);
+  report.synchronised.trials.resize(2);
+  report.synchronised.trials[1].this_run.doubts = {
+      {campaign::Doubt::Kind::kUnseenWait, "uav1", 0.4}};
+  EXPECT_THAT(size_sentences(report),
+              ElementsAre(HasSubstr("No answer: the program of uav1 waited")));
+  EXPECT_EQ(verdict(report.boards[0], report.synchronised), BoardVerdict::kUndecided);
+}
+
 TEST(SizeReport, SaysWhatLimitsTheAnswer) {
   SizeReport report = sample_size();
   report.synchronised.answer.is_narrow = false;

@@ -389,6 +389,30 @@ TEST(Verdict, HasNoAnswerIfTimePassesUnseen) {
               StartsWith("No answer: threads of the program of uav1 computed in parallel (1.9 × "));
 }
 
+TEST(Verdict, OfASweepNamesWhatLimitsItsPoints) {
+  campaign::ScenarioResults windy = flights(10, 0), lost = flights(1, 0);
+  Warning wind{Consequence::kMissing, {}, "<wind>", "is not simulated"};
+  wind.can_change_verdict = true;
+  for (campaign::TrialResult& trial : windy.conditions[0].trials) trial.warnings = {wind};
+  campaign::invalidate(lost.conditions[0].trials[0], "the board is not found");
+  for (campaign::ScenarioResults* point : {&windy, &lost}) {
+    point->swept_from = "turn";
+    point->settings = {{"world", point == &windy ? "\"windy\"" : "\"lost\""}};
+  }
+  const std::vector<Answer> answers = answers_of({verdict_of(windy), verdict_of(lost)});
+  EXPECT_EQ(answers[0].lead, "Fast enough so far, but not all of the world is simulated");
+  EXPECT_THAT(answers[0].rest, HasSubstr("<wind>"));
+  EXPECT_THAT(answers[1].rest, HasSubstr("The first reason: the board is not found."));
+}
+
+TEST(Verdict, OfACrashOnABusyMachineIsNotUndecided) {
+  campaign::ScenarioResults scenario = flights(0, 1);
+  campaign::TrialResult& trial = scenario.conditions[0].trials[0];
+  trial.contacts = {{.uav = "uav1", .count = 1, .hard = 1}};
+  trial.this_run.doubts = {{campaign::Doubt::Kind::kBusyMachine, "", 3.0}};
+  EXPECT_EQ(ruling_of(scenario), Ruling::kGoalMissed);
+}
+
 // The closest limit has 20 % left, and is missed by 20 %.
 TEST(Verdict, OfABusyMachineHoldsIfItsSpreadCannotChangeIt) {
   for (const std::size_t reached : {0U, 1U}) {

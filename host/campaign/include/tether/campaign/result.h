@@ -135,6 +135,7 @@ struct UavEnergy {
 
   /// How many more such flights the charge that is left is enough for; none if none was used.
   std::optional<double> more_flights() const;
+  bool is_empty() const { return charge_to <= 0.0; }
   friend bool operator==(const UavEnergy&, const UavEnergy&) = default;
 };
 double total_J(const energy::Energies_J& spent_J);
@@ -242,6 +243,9 @@ struct TrialResult {
   std::vector<Warning> warnings{};              ///< what of the files is not simulated as written
   std::map<std::string, std::string> versions;  ///< of everything that took part, by its name
   ThisRun this_run;
+
+  /// Programs waited or computed in ways that Tether does not see.
+  bool has_unseen_time() const;
 
   /// nullptr if there is no metric of that name.
   const MetricValue* find_metric(std::string_view metric) const;

@@ -65,6 +65,10 @@ struct SizeReport {
   campaign::Settings settings{};
 };
 
+/// Whether programs waited or computed in ways that Tether does not see, so that there is no
+/// answer.
+bool has_unseen_time(const SizeReport& report);
+
 /// The answer and its evidence: one sentence, then one for each board, then what limits the answer.
 std::vector<Answer> size_answers(const SizeReport& report);
 /// The same without emphasis.

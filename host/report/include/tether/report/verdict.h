@@ -158,6 +158,9 @@ struct Verdict {
 /// The one whose answer comes first. @pre not empty.
 const Verdict& most_urgent(const std::vector<Verdict>& verdicts);
 
+/// Without a reason for missed goals, and without a pace.
+ConditionVerdict verdict_of(const campaign::ConditionResults& results);
+
 /// The exact interval of a share, 95 %. @pre flown ≥ 1.
 campaign::Interval exact_interval(std::size_t reached, std::size_t flown);
 
@@ -178,8 +181,13 @@ struct Answer {
   std::string rest;                ///< begins with ": " or a space
   std::optional<Ruling> ruling{};  ///< which the lead states; none: it states another fact
 };
-/// What `tether size` adds to an answer that rests on these flights: what those missed that did not
-/// reach the goal, and why no computing times are known (empty: they are).
+/// Why no answer can rest on these flights of a condition: programs waited or computed in ways that
+/// Tether does not see. None: they did not.
+std::optional<Answer> unseen_answer(const std::string& condition,
+                                    std::span<const campaign::TrialResult* const> trials);
+/// What `tether size` adds to an answer that rests on these flights: what was not simulated, how
+/// busy the machine was, what those missed that did not reach the goal, and why no computing times
+/// are known (empty: they are).
 std::vector<Answer> answers_on_flights(std::span<const campaign::TrialResult* const> trials,
                                        const std::string& unreadable);
 /// The condition's ruling with its evidence.
