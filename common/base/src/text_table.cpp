@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <charconv>
 #include <iomanip>
 #include <locale>
 #include <sstream>
@@ -130,10 +129,10 @@ std::string fixed(double value, int digits) {
 std::string distinct_text(double value, double other, int digits) {
   constexpr int kAll = 17;
   const auto text = [&](double number) {
-    char buffer[40];
-    const auto [end, error] =
-        std::to_chars(buffer, buffer + sizeof buffer, number, std::chars_format::general, digits);
-    return std::string(buffer, end);
+    std::ostringstream out;
+    out.imbue(std::locale::classic());
+    out << std::setprecision(digits) << number;
+    return out.str();
   };
   while (value != other && digits < kAll && text(value) == text(other)) ++digits;
   return text(value);

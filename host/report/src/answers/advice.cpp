@@ -133,6 +133,9 @@ std::string sentence_of(const Advice& advice, const Verdict& verdict) {
           "Fly more: if this share continues, {} decide (`trials` in the campaign's file, then "
           "`--resume`).",
           counted(advice.flights, "flight"));
+    case Kind::kCompareMore:
+      return "Fly both conditions more often, to see whether chance explains the difference "
+             "(`trials` in the campaign's file, then `--resume`).";
     case Kind::kSetLimit:
       return "Give a metric of the scenario a limit (such as `max_s` of `time_required`), or fly a "
              "mission with deadlines.";

@@ -246,12 +246,17 @@ const Words& words_of(Ruling ruling) {
   return kWords[static_cast<std::size_t>(ruling)];
 }
 
+/// A good answer that rests on less than what was asked for.
 bool leaves_out(const ConditionVerdict& condition) {
-  return is_sufficient(condition.ruling) && !condition.left_out.empty();
+  return is_sufficient(condition.ruling) && (!condition.left_out.empty() || condition.failed > 0);
 }
 
 std::string left_out_in_lead(const ConditionVerdict& condition) {
-  return leaves_out(condition) ? ", but not all of the world is simulated" : "";
+  if (!leaves_out(condition)) return "";
+  return condition.left_out.empty()
+             ? fmt::format(", but {} of {} failed", condition.failed,
+                           counted(condition.flown + condition.failed, "flight"))
+             : ", but not all of the world is simulated";
 }
 
 std::string lead_of(const ConditionVerdict& condition) {

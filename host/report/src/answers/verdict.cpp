@@ -199,7 +199,10 @@ std::vector<Advice> advice_on(const ConditionVerdict& lead) {
       advice.push_back({Kind::kFindThreshold, lead.condition});
       break;
     case Ruling::kGoalMissed:
-      advice.push_back({Kind::kTryFaster, lead.condition});
+      if (lead.miss->evidence == MissReason::Evidence::kFasterUndecided)
+        advice.push_back({Kind::kCompareMore, lead.condition});
+      else
+        advice.push_back({Kind::kTryFaster, lead.condition});
       if (is_too_slow) advice.push_back({Kind::kSpeedUpStage, lead.pace->stages.front().stage});
       break;
     case Ruling::kOtherReason:

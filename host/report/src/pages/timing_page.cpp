@@ -83,7 +83,9 @@ std::vector<std::string> timing_advice(const timing::Timing& timing,
           : fmt::format(
                 "`tether size SCENARIO{}`, where SCENARIO is the file or the name of the "
                 "scenario “{}”.",
-                timing.condition.empty() ? "" : " --condition " + os::shell_word(timing.condition),
+                timing.condition.empty() || timing.condition == timing.board
+                    ? ""
+                    : " --condition " + os::shell_word(timing.condition),
                 timing.scenario);
   advice.push_back(
       "Times alone do not show whether the computer is fast enough. To find its headroom: " + how);

@@ -137,6 +137,7 @@ struct Advice {
     kVarySeeds,      ///< all flights are one
     kFindThreshold,  ///< subject: the condition
     kFlyMore,        ///< subject: the condition; flights: how many in all, 0: very many
+    kCompareMore,    ///< a faster condition was flown, too few times; subject: the condition
     kSetLimit,
     kSynchronise,
   };
