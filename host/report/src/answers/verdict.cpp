@@ -126,7 +126,9 @@ Ruling ruling_of(const ConditionVerdict& verdict, const campaign::ConditionResul
   if (verdict.unsound > 0) return Ruling::kVoid;
   if (verdict.flown == 0) return verdict.failed > 0 ? Ruling::kSetUpFailed : Ruling::kUndecided;
   if (std::ranges::any_of(trials, is_free_running)) return Ruling::kFreeRunning;
-  if (std::ranges::any_of(trials, &campaign::TrialResult::has_unseen_time)) return Ruling::kUnseen;
+  if (verdict.doubt(campaign::Doubt::Kind::kUnseenWait) != nullptr ||
+      verdict.doubt(campaign::Doubt::Kind::kParallelThreads) != nullptr)
+    return Ruling::kUnseen;
   const bool all = verdict.reached == verdict.flown;
   if (all && std::ranges::none_of(trials, has_limit)) return Ruling::kNothingToDecide;
   if (is_within_spread(verdict)) return Ruling::kUndecided;
