@@ -56,14 +56,14 @@ TEST_F(ShippedFilesLookup, RefusesANameIfAFileOfThatKindIsBesideIt) {
     ShippedKind kind;
     const char *name, *file, *text;
   };
-  for (const auto& [kind, name, file, text] :
+  for (const Own& beside :
        {Own{ShippedKind::kScenario, "hover", "hover.toml", "world = \"room\"\n"},
         Own{ShippedKind::kWorld, "room", "room.sdf", "<sdf/>"},
         Own{ShippedKind::kModel, "uav", "uav.sdf", "<sdf/>"},
         Own{ShippedKind::kModel, "uav", "uav/model.sdf", "<sdf/>"}}) {
-    const auto path = folder_.write(std::string("own/") + file, text);
-    const Error error = thrown_error(ErrorCode::kUsage, [&] { named(kind, name); });
-    EXPECT_THAT(error.what(), HasSubstr("Write '" + std::string(file) + "'"));
+    const auto path = folder_.write(std::string("own/") + beside.file, beside.text);
+    const Error error = thrown_error(ErrorCode::kUsage, [&] { named(beside.kind, beside.name); });
+    EXPECT_THAT(error.what(), HasSubstr("Write '" + std::string(beside.file) + "'"));
     std::filesystem::remove(path);
   }
 }
