@@ -28,7 +28,7 @@ void print_row(const std::filesystem::path& folder) {
   const campaign::TrialResult result = campaign::read_result(folder);
   const campaign::SimulatorFigures& simulator = result.this_run.simulator.value();
   const double program_s =
-      computed_s(record::read_record(folder / "record.mcap"), result.cpu_factor);
+      computed_s(record::read_record(folder / "record.mcap"), result.clock.factor);
   const double simulator_s = to_seconds(simulator.stepping + simulator.drawing);
   const double wall_s = to_seconds(result.this_run.wall);
   std::printf("%-32s %7.2f %8.2f %9.2f %8.2f %7.2f %8llu %6llu %8llu\n",

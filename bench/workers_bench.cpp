@@ -69,8 +69,8 @@ int main(int argc, char** argv) {
   scenario::Scenario scenario;
   scenario.name = "nothing";
   scenario.uavs.resize(1);
-  scenario.conditions = {
-      {"host", "", scenario::Policy::kConservativeBarrier, scenario::Clock::kScripted, 1.0, 0.0}};
+  scenario.conditions.emplace_back().name = "host";
+  scenario.conditions[0].computers[0].clock.kind = computer::ClockKind::kScripted;
   for (std::uint64_t seed = 1; seed <= trials; ++seed) campaign.seeds.push_back(seed);
   campaign.scenarios = {{scenario, {"host"}, ""}};
   const auto plans = campaign::plan_trials(campaign, folder.root());

@@ -55,7 +55,7 @@ link::Hello Peers::hello() {
   hello.sut = choices_.text();
   hello.token = flags % 16 == 15 ? choices_.text() : "secret";
   hello.uav = "uav" + std::to_string(flags / 16 % 4);
-  hello.clock = static_cast<link::ClockKind>(choices_.below(6));
+  hello.clock.kind = static_cast<computer::ClockKind>(choices_.below(6));
   hello.concurrent = choices_.coin();
   return hello;
 }

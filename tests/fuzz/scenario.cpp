@@ -11,7 +11,9 @@ namespace {
 
 void require_whole(const scenario::Condition& condition) {
   require(!condition.name.empty(), "a condition without a name");
-  require(std::isfinite(condition.cpu_factor) && condition.cpu_factor > 0.0, "a bad factor");
+  require(std::isfinite(condition.computers.front().clock.factor) &&
+              condition.computers.front().clock.factor > 0.0,
+          "a bad factor");
   const bool is_free = condition.policy == scenario::Policy::kFreeRunning;
   require(!is_free || condition.real_time_factor > 0.0, "free running without a factor");
 }

@@ -12,7 +12,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto read = fuzz::read_or_refuse([&] { return scenario::load_target(file); });
   if (!read) return 0;
   fuzz::require(!read->name.empty() && read->file.is_absolute(), "a target without a name");
-  fuzz::require(std::isfinite(read->cpu_factor) && read->cpu_factor > 0.0, "a bad factor");
+  fuzz::require(std::isfinite(read->clock.factor) && read->clock.factor > 0.0, "a bad factor");
   fuzz::require(read->cores >= 0, "a negative number of cores");
   if (!read->ssh) return 0;
   // It becomes an argument of ssh.

@@ -152,7 +152,7 @@ Status read_environment(supervisor::Settings& settings) {
     return Failure{Failure::Kind::kInvalid,
                    "TETHER_EXEC is set, so this process already runs under tether-exec"};
   }
-  if (options->time->kind() != link::ClockKind::kWall) {
+  if (options->time->clock().kind != computer::ClockKind::kWall) {
     return Failure{
         Failure::Kind::kInvalid,
         "TETHER_CLOCK must be wall or wall*FACTOR, because only the wall clock works for "
@@ -161,7 +161,7 @@ Status read_environment(supervisor::Settings& settings) {
   settings.coordinator = options->address;
   settings.token = options->token;
   settings.uav = options->uav;
-  settings.factor = options->time->factor();
+  settings.factor = options->time->clock().factor;
   return ok_status();
 }
 

@@ -81,8 +81,9 @@ scenario::Condition make_condition(const scenario::Scenario& scenario, const Run
   if (!options.simulator.empty()) condition.simulator = options.simulator;
   if (options.slowdown) scenario::slow_down(condition, *options.slowdown);
   // On a machine of another speed. It is the same condition: its name stays.
-  if (options.cpu_time_scale && condition.clock == scenario::Clock::kCpu)
-    condition.cpu_factor *= *options.cpu_time_scale;
+  for (scenario::Computer& own : condition.computers)
+    if (options.cpu_time_scale && own.clock.kind == computer::ClockKind::kCpu)
+      own.clock.factor *= *options.cpu_time_scale;
   if (!options.unknown_stages.empty())
     scenario::set_unknown_stages(condition, options.unknown_stages);
   return condition;

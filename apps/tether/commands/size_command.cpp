@@ -85,7 +85,7 @@ void require_comparable(const scenario::Condition& own, const scenario::Conditio
                   fmt::format("\"{}\" must have policy = \"free_running\", and \"{}\" "
                               "policy = \"conservative_barrier\".",
                               other.name, own.name));
-  if (own.clock != other.clock || own.cpu_factor != other.cpu_factor)
+  if (computer_of(own, 0).clock != computer_of(other, 0).clock)
     refuse_option("--unsynchronised",
                   fmt::format("\"{}\" and \"{}\" must have the same clock and factor.", other.name,
                               own.name));
@@ -104,7 +104,7 @@ Plan make_plan(const SizeOptions& options) {
   const auto shipped = scenario::ShippedFiles::of_program(os::own_file());
   scenario::Scenario scenario = load_sized_scenario(options);
   const scenario::Condition own = pick_condition(scenario, options.condition);
-  if (own.cpu_factor * plan.report.question.most > kLargestFactor)
+  if (computer_of(own, 0).clock.factor * plan.report.question.most > kLargestFactor)
     refuse_option("--between",
                   fmt::format("{} times the factor of condition \"{}\" is more than {}.",
                               plan.report.question.most, own.name, kLargestFactor));

@@ -193,10 +193,15 @@ Result<Message> read(const wire::Hello& hello) {
   if (hello.build() != nullptr)
     for (const wire::BuildPart* part : *hello.build())
       build.push_back({part->name()->str(), part->value()->str()});
-  return Message(Hello{hello.protocol_version(), hello.sut()->str(), hello.uav()->str(),
-                       static_cast<ClockKind>(hello.clock()), hello.cpu_factor(),
-                       hello.token()->str(), hello.concurrent(), Duration(hello.computing_ns()),
-                       hello.build_id() != nullptr ? hello.build_id()->str() : "", hello.process(),
+  return Message(Hello{hello.protocol_version(),
+                       hello.sut()->str(),
+                       hello.uav()->str(),
+                       {static_cast<computer::ClockKind>(hello.clock()), hello.cpu_factor(),
+                        Duration(hello.computing_ns())},
+                       hello.token()->str(),
+                       hello.concurrent(),
+                       hello.build_id() != nullptr ? hello.build_id()->str() : "",
+                       hello.process(),
                        std::move(build)});
 }
 Result<Message> read(const wire::Refusal& refusal) {

@@ -186,12 +186,12 @@ Content write(FlatBufferBuilder& b, const Hello& hello, ImageSlot&) {
     parts.push_back(wire::CreateBuildPart(b, name, b.CreateString(part.value)));
   }
   const auto build = parts.empty() ? 0 : b.CreateVector(parts);
-  return {
-      wire::Content::Hello,
-      wire::CreateHello(b, hello.protocol_version, sut, uav,
-                        static_cast<wire::ClockKind>(hello.clock), hello.cpu_factor, token,
-                        hello.concurrent, hello.computing.count(), build_id, hello.process, build)
-          .Union()};
+  return {wire::Content::Hello,
+          wire::CreateHello(b, hello.protocol_version, sut, uav,
+                            static_cast<wire::ClockKind>(hello.clock.kind), hello.clock.factor,
+                            token, hello.concurrent, hello.clock.computing.count(), build_id,
+                            hello.process, build)
+              .Union()};
 }
 Content write(FlatBufferBuilder& b, const Welcome& welcome, ImageSlot&) {
   const auto catalogue = write(b, welcome.catalogue);

@@ -3,10 +3,6 @@
 
 namespace tether::link {
 
-std::string_view name(ClockKind kind) {
-  return enum_name(kind, {"wall", "cpu", "scripted", "unstamped", "counted", "replayed"});
-}
-
 std::string stage_between(std::string_view previous_call, std::string_view call) {
   return std::string(previous_call).append(" to ").append(call);
 }

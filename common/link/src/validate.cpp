@@ -107,10 +107,11 @@ void check(Checker& c, const Hello& hello) {
   c.text(hello.sut, kMaxNameBytes, "sut");
   c.text(hello.uav, kMaxNameBytes, "uav");
   c.text(hello.token, kMaxNameBytes, "token");
-  c.require(hello.clock <= ClockKind::kReplayed, "clock", "is unknown");
-  c.require(hello.cpu_factor >= 1e-6 && hello.cpu_factor <= 1e6, "cpu_factor",
+  c.require(static_cast<std::size_t>(hello.clock.kind) < computer::kClockKinds, "clock",
+            "is unknown");
+  c.require(hello.clock.factor >= 1e-6 && hello.clock.factor <= 1e6, "cpu_factor",
             "is not within 1e-6..1e6");
-  c.require(hello.computing >= Duration(0), "computing", "is negative");
+  c.require(hello.clock.computing >= Duration(0), "computing", "is negative");
   c.text(hello.build_id, kMaxBuildIdBytes, "build_id");
   c.require(hello.build_id.find_first_not_of("0123456789abcdef") == std::string::npos, "build_id",
             "is not a number in lower-case hexadecimal digits");

@@ -19,8 +19,13 @@ class RandomMessage {
 
   Message draw(std::uint32_t kind) {
     if (kind == 0)
-      return Hello{random_.bits(),      text(), text(), static_cast<ClockKind>(random_.bits() % 6),
-                   0.01 + number(),     text(), coin(), Duration(random_.bits()),
+      return Hello{random_.bits(),
+                   text(),
+                   text(),
+                   {static_cast<computer::ClockKind>(random_.bits() % computer::kClockKinds),
+                    0.01 + number(), Duration(random_.bits())},
+                   text(),
+                   coin(),
                    coin() ? "0a9f" : ""};
     if (kind == 1) return welcome();
     if (kind == 2) return Refusal{static_cast<Refusal::Reason>(random_.bits() % 6), text()};

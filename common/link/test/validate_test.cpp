@@ -23,8 +23,9 @@ void expect(const Case& c) {
   EXPECT_THAT(status.failure().message, testing::HasSubstr(c.field));
 }
 
-Hello hello_with(double factor, std::string sut = "", ClockKind clock = ClockKind::kCpu) {
-  return {1, std::move(sut), "", clock, factor, ""};
+Hello hello_with(double factor, std::string sut = "",
+                 computer::ClockKind clock = computer::ClockKind::kCpu) {
+  return {1, std::move(sut), "", {clock, factor}, ""};
 }
 Request request_with(decltype(Request::body) body, std::int64_t issued_ns = 0) {
   return {1, from_ns<ExecTime>(issued_ns), Duration(0), std::move(body)};
@@ -54,9 +55,9 @@ TEST(Validate, Hello) {
   for (const double factor : {0.0, -1.0, kNan, kInf}) expect({"cpu_factor", hello_with(factor)});
   expect({"sut", hello_with(1.0, std::string(257, 'x'))});
   expect({"sut", hello_with(1.0, std::string(1, '\0'))});
-  expect({"clock", hello_with(1.0, "", static_cast<ClockKind>(6))});
+  expect({"clock", hello_with(1.0, "", static_cast<computer::ClockKind>(6))});
   Hello backwards = hello_with(1.0);
-  backwards.computing = Duration(-1);
+  backwards.clock.computing = Duration(-1);
   expect({"computing", backwards});
 }
 

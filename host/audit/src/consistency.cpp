@@ -31,11 +31,6 @@ constexpr double kRotationTolerance = 1e-6;
 // Largest number of open calls of one SUT (DESIGN section 2).
 constexpr std::uint64_t kMostOpenCalls = 64;
 
-std::string text_of(const record::ClockInfo& clock) {
-  return fmt::format("\"{}\" × {}{}", clock.clock, clock.cpu_factor,
-                     clock.clock == "scripted" ? " with steps of " + ns(clock.computing) : "");
-}
-
 struct SutSequences {
   bool concurrent = false;
   std::uint64_t last = 0;
@@ -71,14 +66,13 @@ class ConsistencyCheck {
 
   // Rule 6: the clock of the SUT is that of its condition.
   void check_clock(const record::SutInfo& sut) {
-    const record::ClockInfo own{sut.clock, sut.cpu_factor, sut.computing};
-    if (sut.required_clock && *sut.required_clock != own)
+    if (sut.required_clock && *sut.required_clock != sut.clock)
       report_.add({6,
                    sut.uav,
                    0,
                    {},
-                   fmt::format("the SUT's clock is {}, but the condition requires {}", text_of(own),
-                               text_of(*sut.required_clock))});
+                   fmt::format("the SUT's clock is \"{}\", but the condition requires \"{}\"",
+                               sut.clock.text(), sut.required_clock->text())});
   }
 
   void visit(const Logged<Interaction>& entry) {

@@ -24,10 +24,11 @@ inline std::optional<Wide> granted(const record::SutInfo& sut, Wide elapsed) {
   constexpr Wide kMostUnaccounted = 1'000'000'000;
   constexpr Wide kMostCores = 1024;  // if the number is unknown
   const Wide most = elapsed + (elapsed + kClockDrift - 1) / kClockDrift;
-  if (sut.clock == "wall") return scaled(most + kClockJitter, sut.cpu_factor);
-  if (sut.clock != "cpu") return std::nullopt;
+  if (sut.clock.kind == computer::ClockKind::kWall)
+    return scaled(most + kClockJitter, sut.clock.factor);
+  if (sut.clock.kind != computer::ClockKind::kCpu) return std::nullopt;
   const Wide cores = sut.cores > 0 ? Wide{sut.cores} : kMostCores;
-  return scaled(cores * most + std::min(cores * kTick, kMostUnaccounted), sut.cpu_factor);
+  return scaled(cores * most + std::min(cores * kTick, kMostUnaccounted), sut.clock.factor);
 }
 
 /// The finding if ET grew by `grown` in `elapsed` of the host's clock; none if that is allowed.

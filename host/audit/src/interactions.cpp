@@ -99,10 +99,11 @@ class InteractionCheck {
 
   // Rule 6: the SUT stamps its requests, unless its clock is "unstamped".
   void check_stamp(const Entry& entry, const Sut& sut) {
-    const bool should_stamp = sut.info->clock != "unstamped";
+    const bool should_stamp = sut.info->clock.kind != computer::ClockKind::kUnstamped;
     if (entry.message.stamped != should_stamp)
       report_.add(6, entry, "{} by a SUT whose clock is \"{}\"",
-                  entry.message.stamped ? "stamped" : "not stamped", sut.info->clock);
+                  entry.message.stamped ? "stamped" : "not stamped",
+                  computer::name(sut.info->clock.kind));
   }
 
   // Rule 5: what was computed under stages is what ET grew by, since the reply before.

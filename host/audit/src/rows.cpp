@@ -43,8 +43,8 @@ void check_growth(const Entry& entry, const record::SutInfo& info, const History
 // Rule 5: each reading of a scripted clock takes its time, and the request is one.
 void check_script(const Entry& entry, const record::SutInfo& info, const History& sut,
                   Report& report) {
-  const Wide reading = wide(info.computing);
-  if (info.clock != "scripted" || reading <= 0) return;
+  const Wide reading = wide(info.clock.computing);
+  if (info.clock.kind != computer::ClockKind::kScripted || reading <= 0) return;
   const Wide grown = growth(entry, sut);
   if (grown < reading || grown % reading != 0)
     report.add(5, entry, "ET grew by {}, but the scripted clock grows by {} at a time", ns(grown),

@@ -45,7 +45,7 @@ INSTANTIATE_TEST_SUITE_P(Seeds, ValidRecord, ::testing::Range(1, 61));
 // One SUT that twice computes for `grown` of its ET in `elapsed` of the host's clock.
 Record wall_clocked(Duration grown, Duration elapsed) {
   Record record = generate({.seed = 4, .suts = 1, .interactions_per_sut = 3});
-  record.header.suts[0].clock = "wall";
+  record.header.suts[0].clock.kind = computer::ClockKind::kWall;
   WallTime wall = from_ns<WallTime>(5'000'000'000);
   ExecTime et{};
   SimTime st{};
@@ -104,9 +104,9 @@ TEST(Audit, EtGrowsNoFasterThanTheHostsClockAllows) {
                           {"cpu", many_cores + kNs, kSecond, 2},
                           {"scripted", 2 * kSecond, kSecond, 0}}) {
     Record record = wall_clocked(c.grown, c.elapsed);
-    record.header.suts[0].clock = c.clock;
+    record.header.suts[0].clock.kind = computer::clock_kind(c.clock);
     record.header.suts[0].cores = c.cores;
-    record.header.suts[0].cpu_factor = c.factor;
+    record.header.suts[0].clock.factor = c.factor;
     EXPECT_EQ(growth_findings(record), c.findings) << c.clock << " " << c.grown.count();
   }
 }
@@ -129,8 +129,8 @@ TEST(Audit, TheFirstRequestIsComparedWithTheStart) {
 TEST(Audit, EtGrowsByTheReadingsOfAScriptedClock) {
   for (const auto& [grown, findings] : {std::pair(2 * kStep, 1), {2 * kStep + kNs, 3}}) {
     Record record = wall_clocked(grown, kSecond);
-    record.header.suts[0].clock = "scripted";
-    record.header.suts[0].computing = 2 * kStep;
+    record.header.suts[0].clock.kind = computer::ClockKind::kScripted;
+    record.header.suts[0].clock.computing = 2 * kStep;
     EXPECT_EQ(growth_findings(record), findings);  // the first call is at ET 0
   }
 }
@@ -158,8 +158,8 @@ TEST(Audit, AUavThatStartsInsideSomethingMayBePushedOut) {
 
 TEST(Audit, UnstampedRequestsAreANote) {
   Record record = generate({.suts = 1});
-  record.header.suts[0].clock = "unstamped";
-  record.header.suts[0].required_clock = record::ClockInfo{"unstamped"};
+  record.header.suts[0].clock.kind = computer::ClockKind::kUnstamped;
+  record.header.suts[0].required_clock = computer::Clock{computer::ClockKind::kUnstamped};
   for (Entry& entry : record.interactions) entry.message.stamped = false;
   const Verdict verdict = audit(record);
   EXPECT_TRUE(verdict.passed()) << to_text(verdict);

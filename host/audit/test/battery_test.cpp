@@ -14,7 +14,7 @@ Record readings() {
   Record record;
   record.header.policy = record::kConservativeBarrier;
   record.header.step = kStep;
-  record.header.suts = {{.uav = "a", .sut = "s", .clock = "scripted"}};
+  record.header.suts = {{.uav = "a", .sut = "s", .clock = {computer::ClockKind::kScripted}}};
   for (const auto& [ms, charge] : {std::pair{1, 0.9}, {3, 0.5}, {5, 0.3}})
     record.batteries.push_back(
         {SimTime(ms * kStep), 0, {.uav = "a", .at = SimTime(ms * kStep), .charge = charge}});

@@ -101,8 +101,11 @@ record::Record stops_record(const std::vector<std::int64_t>& a,
   record::Record record;
   record.header.boards = {{"obc", 0, true}};
   for (const auto& [uav, stops] : {std::pair("a", a), std::pair("b", b)}) {
-    record.header.suts.push_back(
-        {.uav = uav, .sut = "", .clock = "wall", .concurrent = true, .board = "obc"});
+    record.header.suts.push_back({.uav = uav,
+                                  .sut = "",
+                                  .clock = {computer::ClockKind::kWall},
+                                  .concurrent = true,
+                                  .board = "obc"});
     for (const std::int64_t at : stops)
       record.stops.push_back({{}, 0, {uav, from_ns<ExecTime>(at), std::nullopt, {}}});
   }

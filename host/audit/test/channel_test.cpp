@@ -18,8 +18,8 @@ using std::chrono::microseconds;
 Record one_message() {
   Record record;
   record.header.step = kStep;
-  record.header.suts = {{.uav = "a", .sut = "s", .clock = "scripted"},
-                        {.uav = "b", .sut = "s", .clock = "scripted"}};
+  record.header.suts = {{.uav = "a", .sut = "s", .clock = {computer::ClockKind::kScripted}},
+                        {.uav = "b", .sut = "s", .clock = {computer::ClockKind::kScripted}}};
   record::RadioInfo& radio = record.header.radio;
   radio = {.model = "log_distance",
            .data_rate_bit_s = 8e6,

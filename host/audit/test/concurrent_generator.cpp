@@ -50,7 +50,11 @@ class ConcurrentHost {
     record_.header.policy = record::kConservativeBarrier;
     record_.header.step = Duration(kStep_ns);
     record_.header.seed = options_.seed;
-    record_.header.suts = {{"a", "test", "wall", options_.wall_factor, Duration(1'700'000), true}};
+    record_.header.suts = {{"a",
+                            "test",
+                            {computer::ClockKind::kWall, options_.wall_factor},
+                            Duration(1'700'000),
+                            true}};
     record_.header.sensors = {
         {"a", "camera", "camera", true, Duration(kPeriod_ns), Duration(kPhase), Duration(kDelay),
          Duration(kDelay)},

@@ -14,7 +14,7 @@ Record landing() {
   record.header.step = kStep;
   record.header.reports_contacts = record.header.only_uavs_move = record.header.moves_by_forces =
       true;
-  record.header.suts = {{.uav = "a", .sut = "s", .clock = "scripted"}};
+  record.header.suts = {{.uav = "a", .sut = "s", .clock = {computer::ClockKind::kScripted}}};
   record.header.suts[0].max_acceleration_m_s2 = 30.0;
   record.header.suts[0].extent_m = 0.2;
   for (const int ms : {0, 10, 20}) {

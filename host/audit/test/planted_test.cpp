@@ -85,7 +85,7 @@ void set_arrival(Record& record, Interaction& m, SimTime at) {
 }
 
 // The first SUT is scripted.
-void require_clock(Record& record, const record::ClockInfo& clock) {
+void require_clock(Record& record, const computer::Clock& clock) {
   record.header.suts[0].required_clock = clock;
 }
 
@@ -368,21 +368,21 @@ const Planted kPlanted[] = {
     {"et_at_end_before_last_reply", {5}, [](Record& r) { r.footer->et_at_end[1] -= kNs; }},
     // Rule 6.
     {"not_stamped", {6}, [](Record& r) { where(r, is_sleep).stamped = false; }},
-    {"stamped_by_unstamped_clock", {6}, [](Record& r) { r.header.suts[0].clock = "unstamped"; }},
+    {"stamped_by_unstamped_clock",
+     {6},
+     [](Record& r) { r.header.suts[0].clock.kind = computer::ClockKind::kUnstamped; }},
     {"clock_of_another_kind",
      {6},
-     [](Record& r) {
-       require_clock(r, {"cpu", 1.0, {}});
-     }},
+     [](Record& r) { require_clock(r, {computer::ClockKind::kCpu}); }},
     {"clock_with_another_factor",
      {6},
      [](Record& r) {
-       require_clock(r, {"scripted", 12.0, {}});
+       require_clock(r, {computer::ClockKind::kScripted, 12.0});
      }},
     {"clock_with_another_step",
      {6},
      [](Record& r) {
-       require_clock(r, {"scripted", 1.0, Duration(1)});
+       require_clock(r, {computer::ClockKind::kScripted, 1.0, Duration(1)});
      }},
     // Rule 7.
     {"slept_too_short", {0, 7}, [](Record& r) { where(r, is_long_sleep).reply_at -= kNs; }},

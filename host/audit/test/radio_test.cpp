@@ -29,8 +29,8 @@ Record exchange() {
   Record record;
   record.header.policy = record::kConservativeBarrier;
   record.header.step = kStep;
-  record.header.suts = {{.uav = "a", .sut = "s", .clock = "scripted"},
-                        {.uav = "b", .sut = "s", .clock = "scripted"}};
+  record.header.suts = {{.uav = "a", .sut = "s", .clock = {computer::ClockKind::kScripted}},
+                        {.uav = "b", .sut = "s", .clock = {computer::ClockKind::kScripted}}};
   record.header.radio = {"log_distance", Duration(100'000), 8e6};
   record.interactions = {
       call("a", "send", 1'500'000, 1'500'000, 1), call("b", "receive", 1'000'000, 1'700'000, 1),

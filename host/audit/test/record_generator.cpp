@@ -169,7 +169,7 @@ class Host {
     for (int i = 0; i < options_.suts; ++i) {
       const Duration latency(i * 1'700'000);
       const std::string uav = "uav" + std::to_string(i);
-      record_.header.suts.push_back({uav, "test", "scripted", 1.0, latency});
+      record_.header.suts.push_back({uav, "test", {computer::ClockKind::kScripted}, latency});
       record_.header.sensors.push_back(
           {uav, "camera", "camera", true, kCameraPeriod, kCameraPhase, {}, kMostCameraDelay});
       record_.header.sensors.push_back({uav, "range", "range", false, {}, {}, {}, kMostRangeDelay});

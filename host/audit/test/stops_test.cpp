@@ -185,7 +185,7 @@ const Planted kPlantedStops[] = {
        where(r, [](const auto& m) { return m.kind == record::kSleep; }).st_at_release +=
            Duration(1'000'000);
      }},
-    {"et_faster_than_hosts_clock", {5}, [](Record& r) { r.header.suts[0].cpu_factor = 0.5; }},
+    {"et_faster_than_hosts_clock", {5}, [](Record& r) { r.header.suts[0].clock.factor = 0.5; }},
     {"reply_after_finish",
      {5},
      [](Record& r) {

@@ -39,11 +39,6 @@ std::string setting_name(const scenario::Campaign& campaign, const std::filesyst
   return "file " + name_in(campaign, file);
 }
 
-// Parallel trials would distort the times of such SUTs.
-bool is_by_wall(scenario::Clock clock) {
-  return clock == scenario::Clock::kWall || clock == scenario::Clock::kUnstamped;
-}
-
 }  // namespace
 
 std::filesystem::path trial_folder(const std::string& scenario, const std::string& condition,
@@ -71,18 +66,19 @@ std::vector<TrialPlan> plan_trials(const scenario::Campaign& campaign,
 int parallel_trials(const TrialPlan& plan, int jobs) {
   constexpr double kSimulatorLoad = 0.5, kShareInUse = 0.5;
   const scenario::Condition& condition = *plan.condition;
-  // The SUTs of parallel trials would be bound to the same cores.
+  // Parallel trials would distort the times of SUTs with a wall clock, and be bound to the same
+  // cores.
   double load_of_suts = 0.0;
   for (std::size_t uav = 0; uav < plan.scenario->uavs.size(); ++uav) {
-    const scenario::Condition own = for_uav(condition, uav);
+    const scenario::Computer& own = computer_of(condition, uav);
     const bool is_bound = own.target && own.target->cores > 0;
-    if (is_by_wall(own.clock) || is_bound) return 1;
-    load_of_suts += 1.0 / own.cpu_factor + kSimulatorLoad * condition.real_time_factor;
+    if (own.clock.counts_waiting() || is_bound) return 1;
+    load_of_suts += 1.0 / own.clock.factor + kSimulatorLoad * condition.real_time_factor;
   }
   if (jobs == 1) return 1;
   if (condition.policy == scenario::Policy::kConservativeBarrier) return jobs;
   if (condition.simulator != "mujoco") return 1;
-  // A stalling SUT computes for one part in `cpu_factor` of the time; the embedded simulator with
+  // A stalling SUT computes for one part in its factor of the time; the embedded simulator with
   // its camera took up to half a core at real time.
   return std::max(1, static_cast<int>(kShareInUse * jobs / load_of_suts));
 }
@@ -115,7 +111,7 @@ void require_jobs_allowed(const scenario::Campaign& campaign, int jobs) {
                                       where, condition.simulator));
       bool has_wall_clock = false;
       for (std::size_t uav = 0; uav < entry.scenario.uavs.size(); ++uav)
-        has_wall_clock = has_wall_clock || is_by_wall(for_uav(condition, uav).clock);
+        has_wall_clock = has_wall_clock || computer_of(condition, uav).clock.counts_waiting();
       if (has_wall_clock)
         refuse_jobs(jobs, fmt::format("{} measures its SUT by the wall clock, which parallel "
                                       "trials would distort. Use --jobs 1, or clock = \"cpu\" or "

@@ -19,8 +19,10 @@
 namespace tether::campaign {
 namespace {
 
-/// Of the computers, each once: "front, rear".
+/// Of the computers, each once: "front, rear"; if none is described, that of the target.
 std::string names_of(const scenario::Condition& condition) {
+  const auto& target = condition.computers.front().target;
+  if (condition.seats.empty()) return target ? target->name : "";
   std::vector<std::string> names;
   for (const scenario::Computer& computer : condition.computers) names.push_back(computer.name);
   return fmt::format("{}", fmt::join(names, ", "));
@@ -33,12 +35,9 @@ TrialResult result_of(const scenario::Scenario& scenario, const scenario::Condit
   result.condition = condition.name;
   result.seed = seed;
   result.policy = scenario::name(condition.policy);
-  result.clock = scenario::name(condition.clock);
-  result.cpu_factor = condition.cpu_factor;
-  result.computing = condition.computing;
+  result.clock = computer_of(condition, 0).clock;
   result.real_time_factor = condition.real_time_factor;
-  if (condition.target) result.target = condition.target->name;
-  if (!condition.computers.empty()) result.target = names_of(condition);
+  result.target = names_of(condition);
   for (const auto& [key, value] : scenario.settings) result.settings[key] = value;
   result.emulator = emulator_of(condition);
   result.profiles = scenario::profile_names(scenario, condition);
@@ -49,8 +48,7 @@ std::vector<SutResult> sut_results(const record::Record& record,
                                    const std::vector<TaskEnd>& task_ends) {
   std::vector<SutResult> suts;
   for (const record::SutInfo& info : record.header.suts) {
-    SutResult sut{
-        .uav = info.uav, .sut = info.sut, .clock = info.clock, .cpu_factor = info.cpu_factor};
+    SutResult sut{.uav = info.uav, .sut = info.sut, .clock = info.clock};
     const std::size_t index = suts.size();
     const bool is_synchronised = record.header.policy == record::kConservativeBarrier;
     if (is_synchronised && record.footer && index < record.footer->et_at_end.size()) {
@@ -249,16 +247,14 @@ void add_target(TrialResult& result, const record::TargetInfo& info,
 
 record::EmulatorInfo emulator_of(const scenario::Condition& condition) {
   record::EmulatorInfo info;
-  std::optional<scenario::Target> target = condition.target;
-  for (const scenario::Computer& computer : condition.computers)
-    if (computer.target && computer.target->emulator) target = computer.target;
-  if (!target || !target->emulator) return info;
-  const os::Emulator& emulator = *target->emulator;
-  info.program = emulator.program;
-  info.cpu_model = emulator.cpu_model;
-  for (std::size_t kind = 0; kind < kWorkClasses; ++kind)
-    info.costs.push_back({kWorkClassNames[kind], static_cast<double>(emulator.cost_units[kind]) /
-                                                     static_cast<double>(kCostUnitsPerNs)});
+  for (const scenario::Computer& computer : condition.computers) {
+    if (!computer.target || !computer.target->emulator) continue;
+    const os::Emulator& emulator = *computer.target->emulator;
+    info = {emulator.program, emulator.cpu_model, {}};
+    for (std::size_t kind = 0; kind < kWorkClasses; ++kind)
+      info.costs.push_back({kWorkClassNames[kind], static_cast<double>(emulator.cost_units[kind]) /
+                                                       static_cast<double>(kCostUnitsPerNs)});
+  }
   return info;
 }
 

@@ -18,7 +18,6 @@
 namespace tether::campaign {
 namespace {
 
-constexpr std::string_view kScripted = "scripted";
 constexpr const char* kNotReported = "not reported";
 constexpr std::array<std::string_view, 3> kOutcomes = {"goal_reached", "goal_missed", "failed"};
 
@@ -87,16 +86,24 @@ Json json_of_details(const std::string& details) {
   return parsed.is_object() ? parsed : Json(details);
 }
 
+/// For the object of a SUT or a trial.
+Json json_of(const computer::Clock& clock) {
+  Json json{{"clock", computer::name(clock.kind)}, {"cpu_factor", clock.factor}};
+  if (clock.kind == computer::ClockKind::kScripted)
+    json["computing_s"] = exact_seconds(clock.computing);
+  return json;
+}
+
 Json json_of(const SutResult& sut) {
-  return Json{{"uav", sut.uav},
-              {"sut", sut.sut},
-              {"clock", sut.clock},
-              {"cpu_factor", sut.cpu_factor},
-              {"et_at_end_s", sut.et_at_end ? Json(exact_seconds(*sut.et_at_end)) : Json(nullptr)},
-              {"finished", sut.finished},
-              {"reached_goal", sut.reached_goal},
-              {"outcome", sut.outcome},
-              {"details", json_of_details(sut.details)}};
+  Json json{{"uav", sut.uav}, {"sut", sut.sut}};
+  json.update(json_of(sut.clock));
+  json.update(
+      Json{{"et_at_end_s", sut.et_at_end ? Json(exact_seconds(*sut.et_at_end)) : Json(nullptr)},
+           {"finished", sut.finished},
+           {"reached_goal", sut.reached_goal},
+           {"outcome", sut.outcome},
+           {"details", json_of_details(sut.details)}});
+  return json;
 }
 
 Json json_of(const UavContacts& own) {
@@ -212,12 +219,18 @@ std::string read_details(const JsonReader& json) {
   return details.is_string() ? details.get<std::string>() : details.dump();
 }
 
+computer::Clock read_clock(const JsonReader& json) {
+  computer::Clock clock{computer::clock_kind(json.text("clock")), json.number("cpu_factor")};
+  if (computer::name(clock.kind) != json.text("clock")) json.fail("clock", "is unknown");
+  if (json.has("computing_s")) clock.computing = json.seconds("computing_s");
+  return clock;
+}
+
 SutResult read_sut(const JsonReader& json) {
   SutResult sut;
   sut.uav = json.text("uav");
   sut.sut = json.text("sut");
-  sut.clock = json.text("clock");
-  sut.cpu_factor = json.number("cpu_factor");
+  sut.clock = read_clock(json);
   if (!json.member("et_at_end_s").is_null()) sut.et_at_end = ExecTime(json.seconds("et_at_end_s"));
   sut.finished = json.boolean("finished");
   sut.reached_goal = json.boolean("reached_goal");
@@ -297,9 +310,7 @@ void read_trial(const JsonReader& json, TrialResult& result) {
   result.condition = json.text("condition");
   result.seed = json.count("seed");
   result.policy = json.text("policy");
-  result.clock = json.text("clock");
-  result.cpu_factor = json.number("cpu_factor");
-  if (result.clock == kScripted) result.computing = json.seconds("computing_s");
+  result.clock = read_clock(json);
   result.real_time_factor = json.number("real_time_factor");
   if (json.has("step_s")) result.step = StepReport{json.seconds("step_s"), json.text("step_from")};
   if (json.has("target")) result.target = json.text("target");
@@ -334,11 +345,12 @@ const MetricValue* TrialResult::find_metric(std::string_view metric) const {
 }
 
 std::string to_json(const TrialResult& result) {
-  Json json{{"schema", kResultSchemaVersion}, {"scenario", result.scenario},
-            {"condition", result.condition},  {"seed", result.seed},
-            {"policy", result.policy},        {"clock", result.clock},
-            {"cpu_factor", result.cpu_factor}};
-  if (result.clock == kScripted) json["computing_s"] = exact_seconds(result.computing);
+  Json json{{"schema", kResultSchemaVersion},
+            {"scenario", result.scenario},
+            {"condition", result.condition},
+            {"seed", result.seed},
+            {"policy", result.policy}};
+  json.update(json_of(result.clock));
   if (result.step)
     json.update(
         Json{{"step_s", exact_seconds(result.step->step)}, {"step_from", result.step->from}});

@@ -42,7 +42,7 @@ TEST_F(CampaignPlan, PointsIntoTheCampaign) {
 struct ParallelCase {
   const char* what;
   scenario::Policy policy;
-  scenario::Clock clock;
+  computer::ClockKind clock;
   double cpu_factor, real_time_factor;
   int uavs, jobs, expected;
   const char* simulator = "mujoco";
@@ -51,7 +51,7 @@ struct ParallelCase {
 
 TEST(ParallelTrials, AreAsManyAsDisturbNothing) {
   using enum scenario::Policy;
-  using enum scenario::Clock;
+  using enum computer::ClockKind;
   const ParallelCase cases[] = {
       {"barrier", kConservativeBarrier, kCpu, 6.0, 0.0, 2, 4, 4},
       {"scripted", kConservativeBarrier, kScripted, 1.0, 0.0, 1, 4, 4},
@@ -71,11 +71,11 @@ TEST(ParallelTrials, AreAsManyAsDisturbNothing) {
   for (const auto& c : cases) {
     scenario::Condition condition;
     condition.policy = c.policy;
-    condition.clock = c.clock;
-    condition.cpu_factor = c.cpu_factor;
+    condition.computers[0].clock.kind = c.clock;
+    condition.computers[0].clock.factor = c.cpu_factor;
     condition.real_time_factor = c.real_time_factor;
     condition.simulator = c.simulator;
-    condition.target.emplace().cores = c.cores;
+    condition.computers[0].target.emplace().cores = c.cores;
     scenario::Scenario scenario;
     scenario.uavs.resize(static_cast<std::size_t>(c.uavs));
     const TrialPlan plan{&scenario, &condition, 1, "out", false};
@@ -104,11 +104,11 @@ TEST_F(CampaignPlan, RefusesJobsThatItsConditionsDoNotAllow) {
     EXPECT_EQ(error.subject(), "--jobs");
     EXPECT_THAT(error.what(), HasSubstr(value));
   };
-  conditions[0].clock = scenario::Clock::kScripted;
+  conditions[0].computers[0].clock.kind = computer::ClockKind::kScripted;
   conditions[0].simulator = "gazebo";
   EXPECT_NO_THROW(require_jobs_allowed(campaign_, 2));
   expect_refused(0, "--jobs 0");
-  conditions[1].clock = scenario::Clock::kWall;
+  conditions[1].computers[0].clock.kind = computer::ClockKind::kWall;
   EXPECT_NO_THROW(require_jobs_allowed(campaign_, 1));
   expect_refused(2, "'target'");
   conditions[1].simulator = "tcp://lab:4500";

@@ -22,7 +22,7 @@ SimTime contact_at(std::int64_t ms) {
 // "uav1" rests on the floor, then hits the room's wall; "uav2" lands.
 record::Record crashed_record() {
   record::Record record = Flight().pose(0, 0.0, 0.0, 0.0).finish(3000).record();
-  record.header.suts = {{"uav1", "sut", "cpu"}, {"uav2", "sut", "cpu"}};
+  record.header.suts = {{.uav = "uav1", .sut = "sut"}, {.uav = "uav2", .sut = "sut"}};
   record.header.reports_contacts = true;
   const record::Contact contacts[] = {{"uav1", contact_at(0), "room", 0.0},
                                       {"uav2", contact_at(900), "floor", 0.4},

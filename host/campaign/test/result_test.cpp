@@ -71,8 +71,8 @@ TEST_F(Result, ReadsBackWithEveryOptionalPart) {
        {"\"target\":", "\"step_s\"", "overshoot", "computing_s", "warnings", "\"tasks\"",
         "\"clauses\"", "emulator", "\"energy\"", "\"margins\"", "\"quantiles\""})
     EXPECT_THAT(plain, testing::Not(HasSubstr(member)));
-  trial_.clock = "scripted";
-  trial_.computing = Duration(2'500'000);
+  trial_.clock.kind = computer::ClockKind::kScripted;
+  trial_.clock.computing = Duration(2'500'000);
   trial_.step = StepReport{Duration(4'000'000), "world"};
   trial_.target = "slow_board";
   trial_.emulator = {"qemu-x86_64", "Nehalem", {{"integer", 0.125}, {"load", 0.5}}};
@@ -205,7 +205,8 @@ record::Record finished_record() {
   record.header.tether_version = "0.1.0";
   record.header.simulator = "mujoco 2.2.2";
   record.header.machine = "a machine";
-  record.header.suts = {{"uav1", "tether-sut 0.1.0", "cpu", 8.0, Duration{0}}};
+  record.header.suts = {
+      {"uav1", "tether-sut 0.1.0", {computer::ClockKind::kCpu, 8.0}, Duration{0}}};
   record.footer = record::Footer{.end = "finished",
                                  .reason = "",
                                  .st_at_end = SimTime(seconds(3)),
@@ -234,7 +235,7 @@ TEST_F(MakeResult, TakesEverythingFromTheRecord) {
   EXPECT_EQ(result.condition, "target");
   EXPECT_EQ(result.seed, 5u);
   EXPECT_EQ(result.policy, "conservative_barrier");
-  EXPECT_EQ(result.cpu_factor, 8.0);
+  EXPECT_EQ(result.clock.factor, 8.0);
   EXPECT_EQ(result.target, "");
   EXPECT_EQ(result.find_metric("time_required")->value, 3.0);
   EXPECT_EQ(result.suts[0].et_at_end, ExecTime(seconds(3)));
@@ -278,14 +279,14 @@ TEST_F(MakeResult, MissesTheGoalWithAClause) {
 TEST_F(MakeResult, TakesClockTargetAndProfilesFromScenarioAndCondition) {
   scenario::Scenario& scenario = campaign_.scenarios[0].scenario;
   scenario::Condition& condition = scenario.conditions[1];
-  condition.clock = scenario::Clock::kScripted;
-  condition.computing = milliseconds(3);
-  condition.target.emplace().name = "slow_board";
+  condition.computers[0].clock.kind = computer::ClockKind::kScripted;
+  condition.computers[0].clock.computing = milliseconds(3);
+  condition.computers[0].target.emplace().name = "slow_board";
   scenario.uavs[0].profile.emplace().name = "rig";
   condition.profiles.emplace_back().name = "top";
   const TrialResult result = make(finished_record(), kReached);
-  EXPECT_EQ(result.clock, "scripted");
-  EXPECT_EQ(result.computing, milliseconds(3));
+  EXPECT_EQ(result.clock.kind, computer::ClockKind::kScripted);
+  EXPECT_EQ(result.clock.computing, milliseconds(3));
   EXPECT_EQ(result.target, "slow_board");
   EXPECT_THAT(result.profiles, testing::ElementsAre("rig", "top"));
 }

@@ -154,7 +154,7 @@ TEST_F(RunCampaign, EndsWithAnErrorOfTheUsersFilesAndDoesNotKeepThatTrial) {
 TEST_F(RunCampaign, RunsTrialsInParallelIfTheyMayAndOthersAlone) {
   options_.jobs = 2;
   // A free-running SUT that is always busy.
-  campaign_.scenarios[0].scenario.conditions[2].cpu_factor = 1.0;
+  campaign_.scenarios[0].scenario.conditions[2].computers[0].clock.factor = 1.0;
   campaign_.scenarios[0].scenario.conditions[2].real_time_factor = 1.0;
   std::barrier both(2);
   std::atomic<int> inside{0};

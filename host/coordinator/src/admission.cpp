@@ -41,36 +41,21 @@ std::variant<std::size_t, Refusal> admit(const link::Hello& hello, const std::st
   return uav;
 }
 
-std::string to_text(const ClockSetting& setting) {
-  if (setting.kind == link::ClockKind::kCpu) return fmt::format("cpu*{}", setting.cpu_factor);
-  if (setting.kind == link::ClockKind::kWall && setting.cpu_factor != 1.0)
-    return fmt::format("wall*{}", setting.cpu_factor);
-  if (setting.kind == link::ClockKind::kScripted)
-    return fmt::format("scripted*{}", static_cast<double>(setting.computing.count()) / 1e6);
-  return std::string(link::name(setting.kind));
-}
-
-ClockSetting clock_of(const link::Hello& hello) {
-  return {.kind = hello.clock, .cpu_factor = hello.cpu_factor, .computing = hello.computing};
-}
-
 std::optional<std::string> clock_fault(const link::Hello& hello,
-                                       const std::optional<ClockSetting>& wanted) {
-  if (hello.concurrent &&
-      (hello.clock == link::ClockKind::kCpu || hello.clock == link::ClockKind::kUnstamped ||
-       hello.clock == link::ClockKind::kCounted || hello.clock == link::ClockKind::kReplayed))
+                                       const std::optional<computer::Clock>& wanted) {
+  if (hello.concurrent && !hello.clock.allows_parallel())
     return fmt::format(
         "the clock \"{}\" does not work for several threads; start the SUT with "
         "TETHER_CLOCK='wall'",
-        link::name(hello.clock));
+        computer::name(hello.clock.kind));
   if (!wanted) return std::nullopt;
-  const std::string given = to_text(clock_of(hello));
-  const std::string asked = to_text(*wanted);
+  const std::string given = hello.clock.text();
+  const std::string asked = wanted->text();
   if (given == asked) return std::nullopt;
   std::string advice = fmt::format("start the SUT with TETHER_CLOCK='{}'", asked);
-  if (hello.clock == link::ClockKind::kUnstamped)
+  if (hello.clock.kind == computer::ClockKind::kUnstamped)
     advice = "stamp the requests, or allow this with clock = \"unstamped\" in the condition";
-  if (wanted->kind == link::ClockKind::kUnstamped)
+  if (wanted->kind == computer::ClockKind::kUnstamped)
     advice = "Tether's client library stamps its requests; use another clock in the condition";
   return fmt::format("the SUT's clock is \"{}\", but the condition requires \"{}\"; {}", given,
                      asked, advice);

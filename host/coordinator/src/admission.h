@@ -18,13 +18,10 @@ std::variant<std::size_t, link::Refusal> admit(const link::Hello& hello, const s
                                                const std::vector<std::string>& uavs,
                                                const std::vector<bool>& taken);
 
-/// The clock that a SUT announces.
-ClockSetting clock_of(const link::Hello& hello);
-
 /// What is wrong with a SUT's clock: it is not that of its condition, or a concurrent SUT cannot
 /// use it. None if nothing is.
 std::optional<std::string> clock_fault(const link::Hello& hello,
-                                       const std::optional<ClockSetting>& wanted);
+                                       const std::optional<computer::Clock>& wanted);
 
 /// Why the program cannot be given the time of `replay`: it is another build. None if it can.
 std::optional<std::string> build_fault(const link::Hello& hello,

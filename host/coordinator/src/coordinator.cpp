@@ -29,8 +29,9 @@ constexpr Duration kFlushPeriod = std::chrono::seconds(1);
 
 /// How fast the SUT's clock can run; none if it is the coordinator's own, scripted or counted.
 std::optional<sync::ClockBound> bound_of(const link::Hello& hello, int cores) {
-  if (hello.clock == link::ClockKind::kWall) return sync::wall_bound(hello.cpu_factor);
-  if (hello.clock == link::ClockKind::kCpu) return sync::cpu_bound(hello.cpu_factor, cores);
+  if (hello.clock.kind == computer::ClockKind::kWall) return sync::wall_bound(hello.clock.factor);
+  if (hello.clock.kind == computer::ClockKind::kCpu)
+    return sync::cpu_bound(hello.clock.factor, cores);
   return std::nullopt;
 }
 
@@ -160,7 +161,7 @@ void Coordinator::Impl::start() {
     barrier_.add(ExecTime{},
                  session.is_concurrent() ? sync::SutKind::kConcurrent : sync::SutKind::kSerial);
     computes_from(session, ExecTime{});
-    if (session.hello.clock == link::ClockKind::kUnstamped) {
+    if (session.hello.clock.kind == computer::ClockKind::kUnstamped) {
       session.timer.emplace(ExecTime{}, started_);
       unstamped_.push_back(session.uav);
     }
@@ -193,7 +194,7 @@ uav::Catalogue Coordinator::Impl::catalogue_of(const Session& session) const {
 // Whether every run with these options has the same messages: no clock has a part in them.
 bool Coordinator::Impl::is_repeatable() const {
   return is_synchronised() && std::ranges::all_of(sessions_, [](const Session& session) {
-           return !session.is_concurrent() && link::repeats(session.hello.clock);
+           return !session.is_concurrent() && session.hello.clock.repeats();
          });
 }
 
@@ -266,7 +267,7 @@ void Coordinator::Impl::watch() {
     if (!session.joined() || session.left) continue;
     const std::uint64_t moved = server_->moved_bytes(session.peer);
     if (std::exchange(session.moved_bytes, moved) != moved) watchdog_.heard(session.uav, now);
-    if (!hooks_.computed_by || session.hello.clock != link::ClockKind::kCounted) continue;
+    if (!hooks_.computed_by || session.hello.clock.kind != computer::ClockKind::kCounted) continue;
     const Duration computed = hooks_.computed_by(session.uav);
     if (std::exchange(session.computed, computed) != computed) watchdog_.heard(session.uav, now);
     end_endless(session);
@@ -319,7 +320,7 @@ Party Coordinator::Impl::party(const Session& session, WallTime now) const {
               .computing = is_computing(session),
               .bound = running_ ? barrier_.bound(session.uav) : ExecTime{},
               .silence = watchdog_.silence(session.uav, now),
-              .counted = session.hello.clock == link::ClockKind::kCounted,
+              .counted = session.hello.clock.kind == computer::ClockKind::kCounted,
               .received_bytes = session.received_bytes,
               .computer = options_.uavs[session.uav].computer};
   for (const PendingInteraction& pending : session.open)

@@ -96,12 +96,6 @@ double max_angular_acceleration_rad_s2(const uav::MultirotorParameters& airframe
   return arms_m * max_rotor_thrust_N(airframe) / least_kg_m2;
 }
 
-record::ClockInfo describe(const ClockSetting& clock) {
-  return {.clock = std::string(link::name(clock.kind)),
-          .cpu_factor = clock.cpu_factor,
-          .computing = clock.computing};
-}
-
 }  // namespace
 
 record::Header Coordinator::Impl::make_header() const {
@@ -123,14 +117,12 @@ record::Header Coordinator::Impl::make_header() const {
     header.suts.push_back(
         {.uav = session.uav_name,
          .sut = session.hello.sut,
-         .clock = std::string(link::name(session.hello.clock)),
-         .cpu_factor = session.hello.cpu_factor,
+         .clock = session.hello.clock,
          .command_latency = session.command_latency,
          .concurrent = session.is_concurrent(),
-         .cores = session.hello.clock == link::ClockKind::kCpu ? session.cores : 0,
+         .cores = session.hello.clock.kind == computer::ClockKind::kCpu ? session.cores : 0,
          .max_acceleration_m_s2 = max_acceleration_m_s2(uav.airframe, world().gravity_m_s2),
-         .computing = session.hello.computing,
-         .required_clock = {},
+         .required_clock = options_.uavs[session.uav].clock,
          .build_id = session.hello.build_id,
          .build = parts_of(session.hello),
          .replay = options_.uavs[session.uav].replayed_from,
@@ -142,8 +134,6 @@ record::Header Coordinator::Impl::make_header() const {
       header.suts.back().board = options_.boards[*options_.uavs[session.uav].board].name;
       header.suts.back().pinned_core = options_.uavs[session.uav].pinned_core;
     }
-    if (const auto& required = options_.uavs[session.uav].clock)
-      header.suts.back().required_clock = describe(*required);
     const uav::Catalogue catalogue = sim::make_catalogue(world(), uav);
     for (std::size_t i = 0; i < catalogue.sensors.size(); ++i)
       header.sensors.push_back(

@@ -53,7 +53,7 @@ void Coordinator::Impl::on_message(link::PeerId peer, const link::Message& messa
     return refuse(peer, link::Refusal::Reason::kBadMessage, "the first message must be a Hello");
   if (session->left) return;
   const WallTime now = host_clock_();
-  if (shows_life(message, standing(*session), session->hello.clock))
+  if (shows_life(message, standing(*session), session->hello.clock.kind))
     watchdog_.heard(session->uav, now);
   const auto* progress = std::get_if<link::Progress>(&message);
   session->received_bytes = progress ? progress->received_bytes : 0;
@@ -181,7 +181,7 @@ void Coordinator::Impl::on_stop(Session& session, const link::Progress& stop, Wa
 }
 
 Standing Coordinator::Impl::standing(const Session& session) const {
-  const bool adds_up_cores = session.hello.clock == link::ClockKind::kCpu;
+  const bool adds_up_cores = session.hello.clock.kind == computer::ClockKind::kCpu;
   const int cores = session.cores > 0 ? session.cores : sync::kMostCores;
   return {.running = running_,
           .synchronised = is_synchronised(),

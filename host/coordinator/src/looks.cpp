@@ -39,8 +39,7 @@ Duration Coordinator::Impl::until_look() const {
 
 bool Coordinator::Impl::is_looked_at(const Session& session) const {
   return hooks_.threads_of && is_synchronised() && is_computing(session) && !session.is_hidden &&
-         !session.is_concurrent() && session.hello.clock != link::ClockKind::kWall &&
-         session.hello.clock != link::ClockKind::kUnstamped;
+         !session.is_concurrent() && !session.hello.clock.counts_waiting();
 }
 
 // What a SUT does is known only if it has sent nothing by then: it may have been looked at while it

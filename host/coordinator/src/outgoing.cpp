@@ -93,7 +93,7 @@ void Coordinator::Impl::reply(Session& session, std::size_t open_index, SimTime 
   // A CPU clock adds what child processes computed during the call.
   if (session.plausibility)
     session.plausibility->go_on(barrier_.bound(session.uav),
-                                session.hello.clock == link::ClockKind::kCpu
+                                session.hello.clock.kind == computer::ClockKind::kCpu
                                     ? entry.wall_at_arrival
                                     : entry.wall_at_release);
   for (record::Annotation& note : session.notes) log_.annotation(st, std::move(note));

@@ -46,7 +46,7 @@ void SharedBoards::seat(const RunOptions& options, std::vector<std::size_t> uavs
     require(clock.has_value(), "the clock on a shared board is needed");
     seats_[uavs[i]] = {.pool = pools_.size(),
                        .program = i,
-                       .sends_progress = clock->kind == link::ClockKind::kCpu};
+                       .sends_progress = clock->kind == computer::ClockKind::kCpu};
   }
   sync::SharedCores shared(cores, uavs.size());
   pools_.push_back({std::move(shared), std::move(uavs)});

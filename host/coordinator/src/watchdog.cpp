@@ -66,13 +66,13 @@ std::string describe_blocking(SimTime st, const std::vector<Party>& parties) {
       to_seconds(blocker->silence), sign_of_life(*blocker), to_seconds(blocker->bound));
 }
 
-bool shows_life(const link::Message& message, const Standing& sut, link::ClockKind clock) {
+bool shows_life(const link::Message& message, const Standing& sut, computer::ClockKind clock) {
   if (!sut.running || !sut.synchronised) return true;
   if (std::holds_alternative<link::Annotation>(message)) return false;
   const auto* progress = std::get_if<link::Progress>(&message);
   if (!progress) return true;
   if (progress->received_bytes > 0) return progress->received_bytes > sut.received_bytes;
-  if (clock == link::ClockKind::kWall && sut.open_calls == 0) return false;
+  if (clock == computer::ClockKind::kWall && sut.open_calls == 0) return false;
   return progress->reached > sut.bound;
 }
 

@@ -36,7 +36,7 @@ std::string describe_blocking(SimTime st, const std::vector<Party>& parties);
 /// the SUT itself may be stuck. If it computes, its CPU time grows. A wall clock always grows, so
 /// it counts only while a call is open. More bytes of a reply count. Annotations do not count: a
 /// SUT could send them for ever.
-bool shows_life(const link::Message& message, const Standing& sut, link::ClockKind clock);
+bool shows_life(const link::Message& message, const Standing& sut, computer::ClockKind clock);
 
 /// Detects that a run takes too long or that a SUT is silent for too long, and describes which SUT
 /// is blocked on which. Pure: times are arguments. The barrier does not depend on it.

@@ -54,9 +54,9 @@ TEST(Admission, RejectsWithAReason) {
 }
 
 TEST(Admission, AConcurrentSutNeedsAClockForAllThreads) {
-  for (const auto clock : {link::ClockKind::kCpu, link::ClockKind::kUnstamped}) {
+  for (const auto clock : {computer::ClockKind::kCpu, computer::ClockKind::kUnstamped}) {
     link::Hello threads = hello_for("alpha");
-    threads.clock = clock;
+    threads.clock.kind = clock;
     EXPECT_FALSE(clock_fault(threads, std::nullopt));
     threads.concurrent = true;
     EXPECT_TRUE(clock_fault(threads, std::nullopt));
@@ -64,24 +64,22 @@ TEST(Admission, AConcurrentSutNeedsAClockForAllThreads) {
 }
 
 TEST(Admission, OnlyTheClockOfTheConditionIsAccepted) {
-  const std::pair<ClockSetting, std::string> clocks[] = {
-      {{.kind = link::ClockKind::kWall}, "'wall'"},
-      {{.kind = link::ClockKind::kWall, .cpu_factor = 4.0}, "'wall*4'"},
-      {{.kind = link::ClockKind::kCpu}, "'cpu*1'"},
-      {{.kind = link::ClockKind::kCpu, .cpu_factor = 12.0}, "'cpu*12'"},
-      {{.kind = link::ClockKind::kScripted, .computing = microseconds(1)}, "'scripted*0.001'"},
-      {{.kind = link::ClockKind::kScripted, .computing = microseconds(2500)}, "'scripted*2.5'"},
-      {{.kind = link::ClockKind::kUnstamped}, ""}};
+  const std::pair<computer::Clock, std::string> clocks[] = {
+      {{.kind = computer::ClockKind::kWall}, "'wall'"},
+      {{.kind = computer::ClockKind::kWall, .factor = 4.0}, "'wall*4'"},
+      {{.kind = computer::ClockKind::kCpu}, "'cpu'"},
+      {{.kind = computer::ClockKind::kCpu, .factor = 12.0}, "'cpu*12'"},
+      {{.kind = computer::ClockKind::kScripted, .computing = microseconds(1)}, "'scripted*0.001'"},
+      {{.kind = computer::ClockKind::kScripted, .computing = microseconds(2500)}, "'scripted*2.5'"},
+      {{.kind = computer::ClockKind::kUnstamped}, ""}};
   for (const auto& [wanted, advice] : clocks) {
     for (const auto& [own, unused] : clocks) {
       link::Hello sut = hello_for("alpha");
-      sut.clock = own.kind;
-      sut.cpu_factor = own.cpu_factor;
-      sut.computing = own.computing;
+      sut.clock = own;
       const auto fault = clock_fault(sut, wanted);
-      EXPECT_EQ(fault.has_value(), to_text(own) != to_text(wanted));
+      EXPECT_EQ(fault.has_value(), own != wanted);
       EXPECT_FALSE(clock_fault(sut, std::nullopt));
-      const bool is_stamped = own.kind != link::ClockKind::kUnstamped;
+      const bool is_stamped = own.kind != computer::ClockKind::kUnstamped;
       EXPECT_THAT(is_stamped ? fault.value_or(advice) : advice, HasSubstr(advice));
     }
   }

@@ -98,7 +98,7 @@ TEST_F(CoordinatorBattery, ChargesEachUavOfASharedBoardForItsShareOfTheCores) {
   make(world);
   for (UavOptions& uav : options_.uavs) {
     uav.board = 0;
-    uav.clock = ClockSetting{.kind = link::ClockKind::kScripted};
+    uav.clock = computer::Clock{.kind = computer::ClockKind::kScripted};
   }
   coordinator_ = std::make_unique<Coordinator>(*simulator_, recorder_, options_,
                                                [this] { return now_ += tick_; });

@@ -10,7 +10,7 @@
 namespace tether::coordinator {
 namespace {
 
-using link::ClockKind;
+using computer::ClockKind;
 using std::chrono::hours;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
@@ -22,7 +22,7 @@ class ClockPlausibility : public CoordinatorTest {
   RunReport fly(ClockKind clock, double factor, ScriptedServer::Script script) {
     make();
     link::Hello with_clock = hello("", clock);
-    with_clock.cpu_factor = factor;
+    with_clock.clock.factor = factor;
     peer_ = server_->add_sut(with_clock, std::move(script));
     return run();
   }

@@ -33,11 +33,11 @@ inline SimTime st_ms(std::int64_t value) {
 }
 
 inline link::Hello hello(const std::string& uav = "",
-                         link::ClockKind clock = link::ClockKind::kScripted) {
+                         computer::ClockKind clock = computer::ClockKind::kScripted) {
   link::Hello h;
   h.sut = "script";
   h.uav = uav;
-  h.clock = clock;
+  h.clock.kind = clock;
   h.token = "secret";
   return h;
 }
@@ -128,7 +128,7 @@ class CoordinatorTest : public testing::Test {
 
   RunOptions options_;
   Duration latency_{0};
-  std::optional<ClockSetting> clock_;
+  std::optional<computer::Clock> clock_;
   int cores_ = 0;
   Duration tick_ = std::chrono::milliseconds(1);
   WallTime now_{};

@@ -193,9 +193,9 @@ TEST_F(CoordinatorTest, ProgressOfOneSutReleasesAnother) {
 }
 
 TEST_F(CoordinatorTest, MeasuresTheTimeOfAnUnstampedClient) {
-  clock_ = ClockSetting{.kind = link::ClockKind::kUnstamped};
+  clock_ = computer::Clock{.kind = computer::ClockKind::kUnstamped};
   make();
-  server_->add_sut(hello("", link::ClockKind::kUnstamped),
+  server_->add_sut(hello("", computer::ClockKind::kUnstamped),
                    {read(seconds(99), kRange), finish(seconds(99))});
   run();
   const record::Interaction& entry = recorder_.interactions.at(0);
@@ -203,8 +203,8 @@ TEST_F(CoordinatorTest, MeasuresTheTimeOfAnUnstampedClient) {
   EXPECT_GT(entry.request_at, us(0));
   EXPECT_LT(entry.request_at, us(1'000'000));  // some readings of the host clock
   const record::SutInfo& sut = recorder_.header.suts.at(0);
-  EXPECT_EQ(sut.clock, "unstamped");
-  EXPECT_EQ(sut.required_clock, (record::ClockInfo{"unstamped"}));
+  EXPECT_EQ(sut.clock.kind, computer::ClockKind::kUnstamped);
+  EXPECT_EQ(sut.required_clock, (computer::Clock{computer::ClockKind::kUnstamped}));
 }
 
 // ---- Failures: each ends the run with its cause, and keeps the record up to there.
@@ -263,7 +263,7 @@ TEST_F(CoordinatorTest, ReadsTheTargetOnceAfterTheRun) {
     return record::Readings{{"governor", "performance"}};
   };
   make();
-  server_->add_sut(hello("", link::ClockKind::kWall), {sleep(Duration(0), milliseconds(50))});
+  server_->add_sut(hello("", computer::ClockKind::kWall), {sleep(Duration(0), milliseconds(50))});
   run();
   EXPECT_EQ(reads, 1);
   EXPECT_EQ(recorder_.footer->target_after, (record::Readings{{"governor", "performance"}}));
@@ -325,9 +325,9 @@ TEST_F(CoordinatorTest, CountsATimestampInThePastAsAViolation) {
 }
 
 TEST_F(CoordinatorTest, RejectsASutWithAnotherClockThanItsCondition) {
-  const std::pair<ClockSetting, const char*> cases[] = {
-      {{link::ClockKind::kCpu, 12.0}, "TETHER_CLOCK='cpu*12'"},
-      {{.kind = link::ClockKind::kScripted, .computing = microseconds(2500)},
+  const std::pair<computer::Clock, const char*> cases[] = {
+      {{computer::ClockKind::kCpu, 12.0}, "TETHER_CLOCK='cpu*12'"},
+      {{.kind = computer::ClockKind::kScripted, .computing = microseconds(2500)},
        "TETHER_CLOCK='scripted*2.5'"}};
   options_.connect_limit = seconds(1);
   for (const auto& [clock, expected] : cases) {
@@ -337,7 +337,7 @@ TEST_F(CoordinatorTest, RejectsASutWithAnotherClockThanItsCondition) {
     hooks_.on_refused = [&](const std::string&, const std::string& reason) {
       refused.push_back(reason);
     };
-    const auto peer = server_->add_sut(hello("", link::ClockKind::kWall), {});
+    const auto peer = server_->add_sut(hello("", computer::ClockKind::kWall), {});
     EXPECT_EQ(run().end, RunEnd::kSutLost);
     EXPECT_THAT(refusal(peer).message, HasSubstr(expected));
     EXPECT_THAT(refused, testing::ElementsAre(HasSubstr(expected)));
@@ -441,7 +441,7 @@ TEST_F(CoordinatorTest, CallsWithoutComputingTimeEndTheRunUnlessTheClientIsUnsta
   EXPECT_EQ(run(calls(20'000, Duration(0))).end, RunEnd::kSutLost);
   EXPECT_EQ(recorder_.interactions.size(), kMaxCallsInAStep);
   make();
-  server_->add_sut(hello("", link::ClockKind::kUnstamped), calls(20'000, Duration(0)));
+  server_->add_sut(hello("", computer::ClockKind::kUnstamped), calls(20'000, Duration(0)));
   EXPECT_EQ(run().end, RunEnd::kFinished) << "the clock of the coordinator charges each call";
 }
 

@@ -17,7 +17,8 @@ TEST_F(CountedSut, IsHungWithoutWorkAndEndsAtTheTimeLimitIfItComputesForEver) {
   options_.time_limit = seconds(10);
   for (const bool computes : {false, true}) {
     make();
-    server_->add_sut(hello("", link::ClockKind::kCounted), {sleep(Duration(0), milliseconds(5))});
+    server_->add_sut(hello("", computer::ClockKind::kCounted),
+                     {sleep(Duration(0), milliseconds(5))});
     hooks_.computed_by = [&](std::size_t) { return computes ? now_ - WallTime{} : Duration(0); };
     const RunReport report = run();
     EXPECT_EQ(report.end, computes ? RunEnd::kTimeLimit : RunEnd::kSutHung);

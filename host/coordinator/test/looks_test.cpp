@@ -26,7 +26,7 @@ class Looks : public CoordinatorTest {
       return Ending{RunEnd::kInterrupted, "the test ends"};
     };
   }
-  SutLooks of_silent_sut(link::ClockKind clock = link::ClockKind::kScripted,
+  SutLooks of_silent_sut(computer::ClockKind clock = computer::ClockKind::kScripted,
                          bool concurrent = false) {
     make();
     link::Hello h = hello("", clock);
@@ -48,7 +48,7 @@ TEST_F(Looks, AddUpToTheTimeThatASutWaits) {
   EXPECT_NEAR(to_seconds(looks.waiting), 2.0, 0.05);
   EXPECT_EQ(looks.computing, 0s);
   states_ = {.runnable = 2, .is_halted = false};
-  looks = of_silent_sut(link::ClockKind::kCpu);
+  looks = of_silent_sut(computer::ClockKind::kCpu);
   EXPECT_EQ(looks.waiting, 0s);
   EXPECT_NEAR(to_seconds(looks.computing), 2.0, 0.05);
   EXPECT_EQ(looks.of_all_threads, 2 * looks.computing);
@@ -67,11 +67,11 @@ TEST_F(Looks, IgnoreASutThatIsHalted) {
 }
 
 TEST_F(Looks, IgnoreSutsWhoseTimePassesWhileTheyWait) {
-  for (const auto clock : {link::ClockKind::kWall, link::ClockKind::kUnstamped}) {
+  for (const auto clock : {computer::ClockKind::kWall, computer::ClockKind::kUnstamped}) {
     EXPECT_EQ(of_silent_sut(clock).waiting, 0s);
     EXPECT_EQ(looked_, 0);
   }
-  of_silent_sut(link::ClockKind::kWall, true);
+  of_silent_sut(computer::ClockKind::kWall, true);
   EXPECT_EQ(looked_, 0);
   set_free_running(1.0);
   of_silent_sut();

@@ -20,7 +20,7 @@ const std::vector<Call> kRecorded = {
 class Replayed : public CoordinatorTest {
  protected:
   void make_replay() {
-    clock_ = ClockSetting{.kind = link::ClockKind::kReplayed};
+    clock_ = computer::Clock{.kind = computer::ClockKind::kReplayed};
     make();
     timing::Timing timing;
     timing.build_id = "0a";
@@ -33,7 +33,7 @@ class Replayed : public CoordinatorTest {
                                                  [this] { return now_ += tick_; });
   }
   link::PeerId join(const std::string& build_id = "0a", const std::string& argument = "3000000") {
-    link::Hello own = hello("", link::ClockKind::kReplayed);
+    link::Hello own = hello("", computer::ClockKind::kReplayed);
     own.build_id = build_id;
     own.build = {{"argument 4", argument}};
     return server_->add_sut(own, {});

@@ -24,7 +24,7 @@ class SharedBoard : public CoordinatorTest {
     make(uavs);
     for (UavOptions& uav : options_.uavs) {
       uav.board = 0;
-      uav.clock = ClockSetting{.kind = link::ClockKind::kScripted};
+      uav.clock = computer::Clock{.kind = computer::ClockKind::kScripted};
     }
     remake();
   }

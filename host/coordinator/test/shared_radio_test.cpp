@@ -218,7 +218,7 @@ class SharedRadio : public CoordinatorTest {
       UavOptions& uav = options_.uavs[i];
       uav.board = fleet.boards[i];
       if (fleet.pins[i]) uav.pinned_core = static_cast<int>(free_cores);
-      uav.clock = ClockSetting{.kind = link::ClockKind::kScripted};
+      uav.clock = computer::Clock{.kind = computer::ClockKind::kScripted};
       uav.timings[kRange] = uav::OnDemandTiming{uav::ConstantDelay{kRangeDelay}};
     }
     remake();

@@ -152,14 +152,14 @@ TEST(DescribeState, IsComputingOrWaiting) {
 struct LifeCase {
   const char* what;
   link::Message message;
-  link::ClockKind clock;
+  computer::ClockKind clock;
   std::size_t open_calls;
   bool shows_life;
 };
 
 TEST(ShowsLife, IgnoresTheHelperThreadOfAStuckSut) {
   const Sampler sensors({}, StepGrid(milliseconds(1)), true);
-  constexpr auto kCpu = link::ClockKind::kCpu, kWall = link::ClockKind::kWall;
+  constexpr auto kCpu = computer::ClockKind::kCpu, kWall = computer::ClockKind::kWall;
   const link::Progress same{et_ms(5)}, further{et_ms(6)};
   const LifeCase cases[] = {
       {"a request", link::Request{}, kWall, 0, true},

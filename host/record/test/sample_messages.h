@@ -147,21 +147,19 @@ inline Header header() {
   header.real_time_factor = 0.3;
   header.suts = {{"a",
                   "tether-sut 0.1.0",
-                  "cpu",
-                  6.5,
+                  {computer::ClockKind::kCpu, 6.5, Duration(8)},
                   Duration(2'000'000),
                   false,
                   4,
                   40.5,
-                  Duration(8),
-                  ClockInfo{"scripted", 7.5, Duration(9)},
+                  computer::Clock{computer::ClockKind::kScripted, 7.5, Duration(9)},
                   "0a",
                   {{"argument 1", "--fast"}, {"library libx.so", "0c"}},
                   ReplayInfo{"board.timing", "exact", "2026-11-23T06:00:00Z", "pi", "0b"},
                   "",
                   std::nullopt,
                   "front"},
-                 {"b", "other", "wall", 1.0, {}, true}};
+                 {"b", "other", {}, {}, true}};
   header.sensors = {
       {"a", "camera", "camera", true, Duration(33'333'333), Duration(5), Duration(7), Duration(8)},
       {"a", "range", "range", false, {}, {}}};

@@ -21,7 +21,7 @@ inline record::Record sample_record(std::size_t count) {
   record::SutInfo sut;
   sut.uav = "uav1";
   sut.sut = "tether-sut 0.1.0";
-  sut.clock = "cpu";
+  sut.clock.kind = computer::ClockKind::kCpu;
   record.header.suts = {sut};
   record.header.anchors = {{"blue_box", "box", {0.4, 0.2, 0.4}, {2.0, 1.0, 1.0}, {1, 0, 0, 0}}};
   for (std::size_t i = 0; i < count; ++i) {

@@ -5,19 +5,10 @@
 namespace tether::runner {
 namespace {
 
-bool may_distort(const TrialSpec& spec, const scenario::Condition& own) {
-  switch (own.clock) {
-    case scenario::Clock::kWall:
-      return spec.waits_for_sut || !own.target || !own.target->ssh;
-    case scenario::Clock::kUnstamped:  // this machine's time
-      return true;
-    case scenario::Clock::kCpu:
-    case scenario::Clock::kCounted:
-    case scenario::Clock::kReplayed:
-    case scenario::Clock::kScripted:
-      return false;
-  }
-  return true;
+bool may_distort(const TrialSpec& spec, const scenario::Computer& own) {
+  if (own.clock.kind == computer::ClockKind::kUnstamped) return true;  // this machine's time
+  const bool is_on_board = !spec.waits_for_sut && own.target && own.target->ssh;
+  return own.clock.counts_waiting() && !is_on_board;
 }
 
 int cameras_of(const sim::World& world) {
@@ -35,7 +26,7 @@ int cameras_of(const sim::World& world) {
 int drawing_threads(const TrialSpec& spec, const sim::World& world, int cores) {
   if (spec.condition.policy == scenario::Policy::kFreeRunning) return 0;
   for (std::size_t uav = 0; uav < spec.scenario.uavs.size(); ++uav)
-    if (may_distort(spec, for_uav(spec.condition, uav))) return 0;
+    if (may_distort(spec, computer_of(spec.condition, uav))) return 0;
   return std::clamp(cores - 1, 0, cameras_of(world));
 }
 

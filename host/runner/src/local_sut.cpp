@@ -43,23 +43,23 @@ std::size_t first_cpu(const scenario::Condition& condition, std::size_t uav) {
   };
   std::size_t cpus = 0;
   for (std::size_t other = 0; other < uav; ++other)
-    if (const auto target = for_uav(condition, other).target;
+    if (const auto& target = computer_of(condition, other).target;
         target && !target->ssh && has_own(other))
       cpus += static_cast<std::size_t>(target->cores);
   return cpus;
 }
 
 std::vector<int> cpus_of(const scenario::Condition& condition, std::size_t uav) {
-  const auto target = for_uav(condition, uav).target;
+  const auto& target = computer_of(condition, uav).target;
   return cpus_for(os::allowed_cpus(), target ? target->cores : 0, first_cpu(condition, uav));
 }
 
-bool is_started_here(const scenario::Condition& own) {
+bool is_started_here(const scenario::Computer& own) {
   return !own.by_hand && !(own.target && own.target->ssh);
 }
 
 /// Its counts are in this machine's memory, so that it runs here, whoever starts it.
-bool is_counted(const scenario::Condition& own) {
+bool is_counted(const scenario::Computer& own) {
   return own.target && own.target->emulator;
 }
 
@@ -67,7 +67,7 @@ void require_cores(const scenario::Scenario& scenario, const scenario::Condition
   const std::size_t allowed = os::allowed_cpus().size(), suts = scenario.uavs.size();
   if (first_cpu(condition, suts) <= allowed) return;
   for (std::size_t uav = 0; uav < suts; ++uav)
-    if (const auto target = for_uav(condition, uav).target; target && target->cores > 0)
+    if (const auto& target = computer_of(condition, uav).target; target && target->cores > 0)
       throw Error(ErrorCode::kBadFile, {target->file.string()},
                   fmt::format("'cores' is too large ({} for each of {} SUTs). This process may "
                               "use {} of this machine's",
@@ -118,7 +118,7 @@ std::vector<std::filesystem::path> sut_programs(const scenario::Scenario& scenar
     for (const std::size_t uav : board.uavs) groups[uav] = board.name;
   for (std::size_t i = 0; i < scenario.uavs.size(); ++i) {
     const scenario::UavSetup& uav = scenario.uavs[i];
-    const scenario::Condition own = for_uav(condition, i);
+    const scenario::Computer& own = computer_of(condition, i);
     if (!is_counted(own) && (by_user || !is_started_here(own))) continue;
     needs_plugin = needs_plugin || is_counted(own);
     try {
@@ -140,7 +140,7 @@ void require_sut_programs(const scenario::Scenario& scenario, const scenario::Co
   sut_programs(scenario, condition, by_user);
   if (by_user) return;
   for (std::size_t uav = 0; uav < scenario.uavs.size(); ++uav)
-    if (is_started_here(for_uav(condition, uav))) return require_cores(scenario, condition);
+    if (is_started_here(computer_of(condition, uav))) return require_cores(scenario, condition);
 }
 
 os::ChildCommand local_sut(const scenario::UavSetup& uav, const SutRun& run, std::size_t index,
@@ -148,15 +148,15 @@ os::ChildCommand local_sut(const scenario::UavSetup& uav, const SutRun& run, std
   const SutGroup* const group = group_of(run, index);
   auto environment = environment_of(uav.placement.name, index, run);
   environment.emplace_back("TETHER_OUT", files_folder(out));
-  const scenario::Condition own = for_uav(run.condition, index);
+  const scenario::Computer& own = computer_of(run.condition, index);
   os::ChildCommand command{
       .arguments = local_sut_command(uav.sut, own.target, group ? group->socket : "").words,
       .environment = std::move(environment),
       .log = log,
       .cpus = cpus_of(run.condition, index),
       // Or what it started before it connected would not be known to it.
-      .adopts_orphans =
-          own.clock == scenario::Clock::kCpu || own.clock == scenario::Clock::kCounted};
+      .adopts_orphans = own.clock.kind == computer::ClockKind::kCpu ||
+                        own.clock.kind == computer::ClockKind::kCounted};
   if (is_counted(own)) os::pad_start(command);
   return command;
 }

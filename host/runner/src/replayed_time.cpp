@@ -41,7 +41,7 @@ ReplayedTime replayed_time(const TrialSpec& spec) {
                .recorded_at = timing.recorded_at,
                .board = timing.board,
                .build_id = timing.build_id};
-  time.has_waits = timing.clock.starts_with(link::name(link::ClockKind::kWall));
+  time.has_waits = timing.clock.starts_with(computer::name(computer::ClockKind::kWall));
   if (setting.mode != timing::Mode::kExact)
     time.warnings = timing::warnings(timing::stage_rows(timing));
   for (std::string& warning : time.warnings)

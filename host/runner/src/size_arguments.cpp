@@ -41,8 +41,8 @@ std::vector<std::string> size_arguments(const TrialSpec& spec,
   std::vector<std::string> words = {word_for(spec.scenario.file, shipped), "--condition",
                                     slower.name};
   if (own == nullptr) {
-    const auto& target = spec.condition.target;
-    if (is_slowed || !target || target->file.empty() || !slower.computers.empty()) return {};
+    const auto& target = computer_of(spec.condition, 0).target;
+    if (is_slowed || !target || target->file.empty() || !slower.seats.empty()) return {};
     scenario::slowness(*target, slower);
     words.insert(words.end(), {"--target", target->file.string()});
   }

@@ -12,15 +12,6 @@
 
 namespace tether::runner {
 
-coordinator::ClockSetting clock_of(const scenario::Condition& condition) {
-  using link::ClockKind;
-  // In the order of scenario::Clock.
-  constexpr ClockKind kKinds[] = {ClockKind::kWall,      ClockKind::kCpu,     ClockKind::kScripted,
-                                  ClockKind::kUnstamped, ClockKind::kCounted, ClockKind::kReplayed};
-  return {kKinds[static_cast<std::size_t>(condition.clock)], condition.cpu_factor,
-          condition.computing};
-}
-
 std::vector<std::string> command_line(const scenario::Sut& sut) {
   std::vector<std::string> words = sut.command;
   for (const auto& [key, value] : sut.parameters) {
@@ -68,7 +59,7 @@ os::Environment environment_of(const std::string& uav, std::size_t index, const 
       {"TETHER_ADDRESS", own == run.addresses.end() ? run.address : own->second},
       {"TETHER_TOKEN", run.token},
       {"TETHER_UAV", uav},
-      {"TETHER_CLOCK", to_text(clock_of(for_uav(run.condition, index)))}};
+      {"TETHER_CLOCK", computer_of(run.condition, index).clock.text()}};
   if (const auto counts = run.counts.find(index); counts != run.counts.end()) {
     const os::Environment counting = counts->second.environment();
     environment.insert(environment.end(), counting.begin(), counting.end());
@@ -99,7 +90,7 @@ std::string sut_instructions(const scenario::Scenario& scenario, const SutRun& r
     text += fmt::format("{}\n", fmt::join(words, " "));
   };
   for (std::size_t i = 0; i < scenario.uavs.size(); ++i) {
-    const scenario::Condition own = for_uav(run.condition, i);
+    const scenario::Computer& own = computer_of(run.condition, i);
     if (!all && !own.by_hand) continue;
     const SutGroup* const group = group_of(run, i);
     if (group && group->uavs.front() == i) add(i, group_command(*group));

@@ -34,9 +34,6 @@ struct SutRun {
 /// That of a SUT; null: it has none.
 const SutGroup* group_of(const SutRun& run, std::size_t uav);
 
-/// The clock of the SUTs under a condition.
-coordinator::ClockSetting clock_of(const scenario::Condition& condition);
-
 /// The SUT's program with its parameters as options: max_frames = 5 becomes --max-frames 5.
 std::vector<std::string> command_line(const scenario::Sut& sut);
 /// A SUT's command line, and the index of its program in it.

@@ -28,7 +28,7 @@ board::BoardSut board_sut(board::Board& board, const scenario::Scenario& scenari
       value = board.copy(value);
   const SutGroup* const group = group_of(run, index);
   SutCommand command =
-      sut_command(sut, for_uav(run.condition, index).target, group ? group->socket : "");
+      sut_command(sut, computer_of(run.condition, index).target, group ? group->socket : "");
   return {.uav = uav.placement.name,
           .words = std::move(command.words),
           .program = command.program,
@@ -72,7 +72,7 @@ void SutProcesses::start(const scenario::Scenario& scenario, const SutRun& run,
                          const std::filesystem::path& folder,
                          const std::vector<board::Board*>& boards) {
   for (std::size_t i = 0; i < scenario.uavs.size(); ++i) {
-    if (for_uav(run.condition, i).by_hand) continue;
+    if (computer_of(run.condition, i).by_hand) continue;
     const scenario::UavSetup& uav = scenario.uavs[i];
     board::Board* const board = boards.empty() ? nullptr : boards[i];
     if (!board && !std::exchange(has_local_, true)) os::adopt_orphans();

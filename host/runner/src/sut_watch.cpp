@@ -40,7 +40,7 @@ std::optional<coordinator::ThreadStates> SutWatch::states(std::size_t uav) const
 }
 
 std::vector<campaign::Doubt> doubts_of(const coordinator::SutReport& sut,
-                                       const coordinator::ClockSetting& clock, bool has_waits) {
+                                       const computer::Clock& clock, bool has_waits) {
   using Kind = campaign::Doubt::Kind;
   std::vector<campaign::Doubt> doubts;
   const double least_s =
@@ -50,8 +50,8 @@ std::vector<campaign::Doubt> doubts_of(const coordinator::SutReport& sut,
     doubts.push_back({Kind::kUnseenWait, sut.uav, waiting_s});
   const double computing_s = to_seconds(looks.computing);
   const double of_all_s = to_seconds(looks.of_all_threads);
-  if (clock.kind == link::ClockKind::kCpu &&
-      (of_all_s - computing_s) * clock.cpu_factor > least_s &&
+  if (clock.kind == computer::ClockKind::kCpu &&
+      (of_all_s - computing_s) * clock.factor > least_s &&
       of_all_s > kDoubtfulThreads * computing_s)
     doubts.push_back({Kind::kParallelThreads, sut.uav, of_all_s / computing_s});
   return doubts;

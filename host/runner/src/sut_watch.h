@@ -33,7 +33,6 @@ class SutWatch {
 
 /// What the looks at a SUT put in doubt. `clock`: of the SUT; `has_waits`: its replayed time does.
 std::vector<campaign::Doubt> doubts_of(const coordinator::SutReport& sut,
-                                       const coordinator::ClockSetting& clock,
-                                       bool has_waits = false);
+                                       const computer::Clock& clock, bool has_waits = false);
 
 }  // namespace tether::runner

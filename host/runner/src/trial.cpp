@@ -43,7 +43,7 @@ Boards hold_boards(const TrialSpec& spec, const std::stop_token& stop) {
   std::map<std::string, board::Board*> at;
   for (std::size_t uav = 0; uav < boards.by_uav.size(); ++uav) {
     if (spec.sut_place(uav) != SutPlace::kBoard) continue;
-    const scenario::SshAddress address = *for_uav(spec.condition, uav).target->ssh;
+    const scenario::SshAddress address = *computer_of(spec.condition, uav).target->ssh;
     board::Board*& board = at[scenario::to_string(address)];
     if (!board)
       board = boards.all.emplace_back(std::make_unique<board::Board>(address, stop)).get();
@@ -244,7 +244,7 @@ StartSimulator prepare(const BackEnd& back_end, sim::World world, const WarningS
 }  // namespace
 
 SutPlace TrialSpec::sut_place(std::size_t uav) const {
-  const scenario::Condition own = for_uav(condition, uav);
+  const scenario::Computer& own = computer_of(condition, uav);
   if (waits_for_sut || own.by_hand) return SutPlace::kUnknown;
   return own.target && own.target->ssh ? SutPlace::kBoard : SutPlace::kThisMachine;
 }

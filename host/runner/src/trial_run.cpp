@@ -56,9 +56,9 @@ std::optional<clockid_t> measuring_clock(const TrialSpec& spec) {
   std::optional<clockid_t> clock;
   for (std::size_t uav = 0; uav < spec.scenario.uavs.size(); ++uav) {
     if (spec.sut_place(uav) != SutPlace::kThisMachine) continue;
-    const link::ClockKind kind = clock_of(for_uav(spec.condition, uav)).kind;
-    if (kind == link::ClockKind::kCpu) return CLOCK_THREAD_CPUTIME_ID;
-    if (!link::repeats(kind)) clock = CLOCK_MONOTONIC;
+    const computer::Clock own = computer_of(spec.condition, uav).clock;
+    if (own.kind == computer::ClockKind::kCpu) return CLOCK_THREAD_CPUTIME_ID;
+    if (!own.repeats()) clock = CLOCK_MONOTONIC;
   }
   return clock;
 }
@@ -77,10 +77,10 @@ record::Readings read_target(board::Board* board) {
 
 /// The machine of that UAV's SUT.
 record::TargetInfo target_info(const TrialSpec& spec, board::Board* board, std::size_t uav) {
-  const scenario::Condition own = for_uav(spec.condition, uav);
-  return {.name = !own.computer.empty() ? own.computer
-                  : own.target          ? own.target->name
-                                        : "host",
+  const scenario::Computer& own = computer_of(spec.condition, uav);
+  return {.name = !own.name.empty() ? own.name
+                  : own.target      ? own.target->name
+                                    : "host",
           .address = board ? scenario::to_string(board->connection().address()) : "",
           .before = read_target(board)};
 }
@@ -114,7 +114,7 @@ std::vector<MachineReadings> other_targets(const TrialSpec& spec, const Boards& 
 std::map<std::size_t, os::CountFile> count_files(const TrialSpec& spec) {
   std::map<std::size_t, os::CountFile> counts;
   for (std::size_t i = 0; i < spec.scenario.uavs.size(); ++i)
-    if (const auto target = for_uav(spec.condition, i).target; target && target->emulator)
+    if (const auto& target = computer_of(spec.condition, i).target; target && target->emulator)
       counts.try_emplace(i, *target->emulator);
   return counts;
 }
@@ -126,7 +126,7 @@ void share_boards(const scenario::Condition& condition, coordinator::RunOptions&
     options.boards.push_back({.name = board.name, .is_real = true});
   }
   for (std::size_t i = 0; i < condition.computers.size(); ++i) {
-    const bool is_real = condition.computers[i].clock == scenario::Clock::kWall;
+    const bool is_real = condition.computers[i].clock.kind == computer::ClockKind::kWall;
     if (is_real || !is_shared(condition, i)) continue;
     for (std::size_t uav = 0; uav < options.uavs.size(); ++uav) {
       if (condition.seats[uav].computer != i) continue;
@@ -149,9 +149,9 @@ coordinator::RunOptions run_options(const TrialSpec& spec, const TrialInputs& in
     coordinator::UavOptions& uav = options.uavs[i];
     uav.timings = inputs.timings[i];
     uav.command_latency = spec.scenario.uavs[i].command_latency;
-    const scenario::Condition own = for_uav(spec.condition, i);
-    uav.clock = clock_of(own);
-    uav.computer = own.computer;
+    const scenario::Computer& own = computer_of(spec.condition, i);
+    uav.clock = own.clock;
+    uav.computer = own.name;
     uav.cores = spec.sut_place(i) == SutPlace::kThisMachine ? known_cores() : 0;
     if (inputs.replayed.replays.empty()) continue;
     uav.replay = inputs.replayed.replays[i];
@@ -352,7 +352,7 @@ TrialEnd TrialRun::fly(std::optional<MachineWatch>& machine) {
 std::vector<campaign::Doubt> TrialRun::doubts(const coordinator::RunReport& report) const {
   std::vector<campaign::Doubt> doubts;
   for (std::size_t uav = 0; uav < report.suts.size(); ++uav)
-    std::ranges::copy(doubts_of(report.suts[uav], clock_of(for_uav(spec_.condition, uav)),
+    std::ranges::copy(doubts_of(report.suts[uav], computer_of(spec_.condition, uav).clock,
                                 inputs_.replayed.has_waits),
                       std::back_inserter(doubts));
   std::ranges::stable_sort(doubts, {}, &campaign::Doubt::kind);

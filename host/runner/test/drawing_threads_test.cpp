@@ -7,38 +7,38 @@
 namespace tether::runner {
 namespace {
 
-using scenario::Clock;
+using computer::ClockKind;
 using scenario::Policy;
 
 TEST(DrawingThreads, AreNoneWhereTheyCouldDistortTheTimeOfTheProgram) {
   struct Case {
     const char* what;
-    Clock clock;
+    ClockKind clock;
     bool on_board, waits;
     Policy policy;
     int threads;
   };
   constexpr Policy kBarrier = Policy::kConservativeBarrier;
   const Case cases[] = {
-      {"CPU time", Clock::kCpu, false, false, kBarrier, 1},
-      {"counted instructions", Clock::kCounted, false, false, kBarrier, 1},
-      {"a script", Clock::kScripted, false, false, kBarrier, 1},
-      {"wall time of this machine", Clock::kWall, false, false, kBarrier, 0},
-      {"wall time of a board", Clock::kWall, true, false, kBarrier, 1},
-      {"wall time of any machine", Clock::kWall, false, true, kBarrier, 0},
-      {"wall time, started by the user", Clock::kWall, true, true, kBarrier, 0},
-      {"the coordinator's time", Clock::kUnstamped, true, false, kBarrier, 0},
-      {"free running", Clock::kCpu, false, false, Policy::kFreeRunning, 0},
+      {"CPU time", ClockKind::kCpu, false, false, kBarrier, 1},
+      {"counted instructions", ClockKind::kCounted, false, false, kBarrier, 1},
+      {"a script", ClockKind::kScripted, false, false, kBarrier, 1},
+      {"wall time of this machine", ClockKind::kWall, false, false, kBarrier, 0},
+      {"wall time of a board", ClockKind::kWall, true, false, kBarrier, 1},
+      {"wall time of any machine", ClockKind::kWall, false, true, kBarrier, 0},
+      {"wall time, started by the user", ClockKind::kWall, true, true, kBarrier, 0},
+      {"the coordinator's time", ClockKind::kUnstamped, true, false, kBarrier, 0},
+      {"free running", ClockKind::kCpu, false, false, Policy::kFreeRunning, 0},
   };
   const sim::World world = sim::make_fake_world(4);
   for (const Case& c : cases) {
     SCOPED_TRACE(c.what);
     TrialSpec spec;
     spec.scenario.uavs.resize(1);
-    spec.condition.clock = c.clock;
+    spec.condition.computers[0].clock.kind = c.clock;
     spec.condition.policy = c.policy;
     spec.waits_for_sut = c.waits;
-    if (c.on_board) spec.condition.target.emplace().ssh.emplace();
+    if (c.on_board) spec.condition.computers[0].target.emplace().ssh.emplace();
     EXPECT_EQ(drawing_threads(spec, world, 2), c.threads);
   }
 }

@@ -139,8 +139,8 @@ TEST(LocalSut, ChecksTheProgramsAndCoresOfAScenario) {
   EXPECT_NO_THROW(require_sut_programs(scenario, {}));
 
   scenario::Condition condition;
-  condition.target = target({}, "");
-  condition.target->cores = 1 << 20;
+  condition.computers[0].target = target({}, "");
+  condition.computers[0].target->cores = 1 << 20;
   Error error = bad_file_error([&] { require_sut_programs(scenario, condition); });
   EXPECT_EQ(error.where().file, "/targets/t.toml");
   EXPECT_EQ(error.subject(), "cores");
@@ -168,9 +168,9 @@ TEST(LocalSut, ChecksAProgramThatTheUserStartsOnlyIfItIsCounted) {
   EXPECT_EQ(bad_file_error([&] { require_sut_programs(scenario, by_hand); }).subject(), "uav1");
 
   scenario::Condition waiting;
-  waiting.target = target({"sh"}, "");
+  waiting.computers[0].target = target({"sh"}, "");
   EXPECT_NO_THROW(require_sut_programs(scenario, waiting, true));
-  waiting.target->emulator.emplace().program = "sh";
+  waiting.computers[0].target->emulator.emplace().program = "sh";
   EXPECT_EQ(bad_file_error([&] { require_sut_programs(scenario, waiting, true); }).subject(),
             "uav1");
 }
@@ -181,8 +181,8 @@ TEST(LocalSut, NeedsThePluginForACountedTarget) {
   scenario.uavs.resize(1);
   scenario.uavs[0].sut.command = {"sh"};
   scenario::Condition condition;
-  condition.target = target({"sh"}, "");
-  condition.target->emulator.emplace().program = "sh";
+  condition.computers[0].target = target({"sh"}, "");
+  condition.computers[0].target->emulator.emplace().program = "sh";
   const std::string plugin = scratch.write("plugin.so", "");
   ::setenv("TETHER_COUNTER_PLUGIN", plugin.c_str(), 1);
   EXPECT_EQ(sut_programs(scenario, condition).back(), plugin);

@@ -52,8 +52,8 @@ TEST(SizeArguments, AreNoneForABoard) {
   TrialSpec spec;
   spec.scenario = scenario::load_scenario(kData / "scenarios/face_anchor.toml");
   scenario::Condition& board = spec.scenario.conditions.front();
-  board.clock = scenario::Clock::kWall;
-  board.target.emplace().ssh = scenario::SshAddress{"pi@board"};
+  board.computers[0].clock.kind = computer::ClockKind::kWall;
+  board.computers[0].target.emplace().ssh = scenario::SshAddress{"pi@board"};
   spec.condition = board;
   EXPECT_THAT(size_arguments(spec, scenario::ShippedFiles(kData)), IsEmpty());
 }

@@ -7,9 +7,8 @@ namespace tether::runner {
 namespace {
 
 using campaign::Doubt;
-using coordinator::ClockSetting;
+using computer::ClockKind;
 using coordinator::SutLooks;
-using link::ClockKind;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 using testing::ElementsAre;
@@ -21,7 +20,7 @@ coordinator::SutReport report(Duration et, SutLooks looks) {
 
 TEST(SutWatch, DoubtsWaitingOfMoreThanAHundredthOfTheFlight) {
   for (const ClockKind kind : {ClockKind::kCpu, ClockKind::kScripted, ClockKind::kCounted}) {
-    const ClockSetting clock{kind};
+    const computer::Clock clock{kind};
     EXPECT_THAT(doubts_of(report(seconds(9), {.waiting = milliseconds(90)}), clock), IsEmpty());
     EXPECT_THAT(doubts_of(report(seconds(9), {.waiting = milliseconds(92)}), clock),
                 ElementsAre(Doubt{Doubt::Kind::kUnseenWait, "uav1", 0.092}));

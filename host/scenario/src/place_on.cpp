@@ -5,15 +5,14 @@
 namespace tether::scenario {
 
 std::string why_not_on(const Condition& condition, const Target& target) {
-  const bool is_scaled_wall = target.clock == Clock::kWall && target.cpu_factor != 1.0;
-  const bool is_counted = target.clock == Clock::kCounted;
-  if (condition.policy == Policy::kFreeRunning && (is_scaled_wall || is_counted))
+  const bool is_counted = target.clock.kind == computer::ClockKind::kCounted;
+  if (condition.policy == Policy::kFreeRunning && target.clock.needs_barrier())
     return fmt::format(
         "the target \"{}\" {}, which needs policy = \"conservative_barrier\", because free running "
         "uses the real wall clock. Select another condition, or another target.",
         target.name, is_counted ? "counts work" : "scales the wall clock");
   for (const Seat& seat : condition.seats)
-    if (target.clock == Clock::kWall && seat.pinned_core)
+    if (target.clock.kind == computer::ClockKind::kWall && seat.pinned_core)
       return fmt::format(
           "a UAV has a 'pinned_core' of the target \"{}\", which needs a modelled computer, but "
           "\"{}\" has a wall clock. Use a target with the clock \"cpu\" or \"counted\", or remove "
@@ -26,24 +25,19 @@ std::string why_not_on(const Condition& condition, const Target& target) {
   return "";
 }
 
-void place_on(Condition& condition, Target target) {
+void place_on(Condition& condition, const Target& target) {
   if (const std::string why = why_not_on(condition, target); !why.empty()) {
     throw Error(ErrorCode::kUsage, fmt::format("condition \"{}\": {}", condition.name, why))
         .about(condition.name);
   }
   for (Computer& computer : condition.computers) {
     computer.clock = target.clock;
-    computer.cpu_factor = target.cpu_factor;
-    computer.computing = Duration{0};
     computer.target = target;
-    if (target.clock == Clock::kWall) computer.cores = 0;
-    if (target.clock != Clock::kWall) computer.target->cores = 0;
+    if (condition.seats.empty()) continue;
+    if (target.clock.kind == computer::ClockKind::kWall) computer.cores = 0;
+    if (target.clock.kind != computer::ClockKind::kWall) computer.target->cores = 0;
   }
-  condition.clock = target.clock;
-  condition.cpu_factor = target.cpu_factor;
-  condition.computing = Duration{0};
   condition.replay.reset();
-  condition.target = std::move(target);
 }
 
 }  // namespace tether::scenario

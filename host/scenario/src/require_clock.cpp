@@ -8,13 +8,13 @@ namespace tether::scenario {
 void require_clock(const Scenario& scenario, const Condition& condition) {
   for (std::size_t i = 0; i < scenario.uavs.size(); ++i) {
     const UavSetup& uav = scenario.uavs[i];
-    const Clock clock = for_uav(condition, i).clock;
-    if (!uav.sut.concurrent || clock == Clock::kWall) continue;
+    const computer::ClockKind clock = computer_of(condition, i).clock.kind;
+    if (!uav.sut.concurrent || clock == computer::ClockKind::kWall) continue;
     throw Error(
         ErrorCode::kBadFile, {scenario.file.string()},
         fmt::format("the SUT of UAV \"{}\" is concurrent, but condition \"{}\" has the clock "
                     "\"{}\". Several threads share a time line only with clock = \"wall\".",
-                    uav.placement.name, condition.name, name(clock)))
+                    uav.placement.name, condition.name, computer::name(clock)))
         .about(uav.placement.name);
   }
 }

@@ -62,7 +62,7 @@ void resolve_energy(const Scenario& scenario, const Condition& condition, sim::W
                          uav.name, scenario.uavs[i].placement.model.string()));
       model.battery = *uav.battery;
     }
-    if (const auto target = for_uav(condition, i).target; target && target->power)
+    if (const auto& target = computer_of(condition, i).target; target && target->power)
       model.computer = *target->power;
     require_possible(energy, model, uav, world.gravity_m_s2);
     if (is_supervised(scenario, condition, i))

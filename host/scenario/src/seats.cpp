@@ -23,7 +23,7 @@ constexpr std::size_t kMostPrograms = 40;
 
 void require_sharable(const Condition& condition, std::size_t index) {
   const Computer& computer = condition.computers[index];
-  if (computer.clock == Clock::kWall) return;  // nothing is modelled
+  if (computer.clock.kind == computer::ClockKind::kWall) return;  // nothing is modelled
   std::size_t suts = 0;
   std::set<int> pinned;
   for (const Seat& seat : condition.seats) {
@@ -62,19 +62,8 @@ void require_other_addresses(const Condition& condition) {
 
 }  // namespace
 
-Condition for_uav(const Condition& condition, std::size_t uav) {
-  Condition own = condition;
-  own.computers.clear();
-  own.seats.clear();
-  if (condition.computers.empty()) return own;
-  const Computer& computer = condition.computers[condition.seats[uav].computer];
-  own.computer = computer.name;
-  own.by_hand = computer.by_hand;
-  own.clock = computer.clock;
-  own.cpu_factor = computer.cpu_factor;
-  own.computing = computer.computing;
-  own.target = computer.target;
-  return own;
+const Computer& computer_of(const Condition& condition, std::size_t uav) {
+  return condition.computers[condition.seats.empty() ? 0 : condition.seats[uav].computer];
 }
 
 bool is_shared(const Condition& condition, std::size_t computer) {
@@ -84,16 +73,17 @@ bool is_shared(const Condition& condition, std::size_t computer) {
 std::vector<RealBoard> real_boards(const Condition& condition, std::size_t uavs) {
   std::vector<RealBoard> boards;
   for (std::size_t i = 0; i < condition.computers.size(); ++i) {
-    if (condition.computers[i].clock != Clock::kWall || !is_shared(condition, i)) continue;
+    const Computer& computer = condition.computers[i];
+    if (computer.clock.kind != computer::ClockKind::kWall || !is_shared(condition, i)) continue;
     RealBoard& board = boards.emplace_back();
-    board.name = condition.computers[i].name;
+    board.name = computer.name;
     for (std::size_t uav = 0; uav < condition.seats.size(); ++uav)
       if (condition.seats[uav].computer == i) board.uavs.push_back(uav);
   }
-  const bool is_one_for_all =
-      condition.computers.empty() && condition.target && condition.target->ssh;
+  const auto& target = condition.computers.front().target;
+  const bool is_one_for_all = condition.seats.empty() && target && target->ssh;
   if (!is_one_for_all || uavs < 2) return boards;
-  boards.push_back({condition.target->name, std::vector<std::size_t>(uavs)});
+  boards.push_back({target->name, std::vector<std::size_t>(uavs)});
   std::iota(boards.back().uavs.begin(), boards.back().uavs.end(), std::size_t{0});
   return boards;
 }
@@ -112,11 +102,6 @@ void seat(const Scenario& scenario, Condition& condition, bool shared) {
   }
   require_other_addresses(condition);
   for (std::size_t i = 0; i < condition.computers.size(); ++i) require_sharable(condition, i);
-  const Condition first = for_uav(condition, 0);
-  condition.clock = first.clock;
-  condition.cpu_factor = first.cpu_factor;
-  condition.computing = first.computing;
-  condition.target = first.target;
 }
 
 }  // namespace tether::scenario

@@ -13,15 +13,16 @@ TEST(RequireClock, RefusesAllButTheWallClockForAConcurrentProgram) {
   scenario.uavs.resize(2);
   scenario.uavs[1].placement.name = "uav2";
   Condition condition;
-  for (const Clock clock : {Clock::kWall, Clock::kCpu, Clock::kScripted}) {
-    condition.clock = clock;
+  for (const computer::ClockKind clock :
+       {computer::ClockKind::kWall, computer::ClockKind::kCpu, computer::ClockKind::kScripted}) {
+    condition.computers[0].clock.kind = clock;
     scenario.uavs[1].sut.concurrent = false;
     EXPECT_NO_THROW(require_clock(scenario, condition));
     scenario.uavs[1].sut.concurrent = true;
-    if (clock != Clock::kWall)
+    if (clock != computer::ClockKind::kWall)
       expect_refusal(0, "uav2", [&] { require_clock(scenario, condition); });
   }
-  condition.clock = Clock::kWall;
+  condition.computers[0].clock.kind = computer::ClockKind::kWall;
   EXPECT_NO_THROW(require_clock(scenario, condition));
 }
 

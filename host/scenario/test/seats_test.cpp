@@ -65,17 +65,17 @@ TEST_F(Seats, EachUavRunsOnTheTargetThatItNames) {
   EXPECT_TRUE(is_shared(shared, 0));
   EXPECT_FALSE(is_shared(shared, 1));
   EXPECT_EQ(shared.seats[1].pinned_core, 1);
-  EXPECT_EQ(for_uav(shared, 1).cpu_factor, 3.0);
-  EXPECT_EQ(for_uav(shared, 2).clock, Clock::kScripted);
-  EXPECT_EQ(for_uav(shared, 2).computing, std::chrono::milliseconds(4));
+  EXPECT_EQ(computer_of(shared, 1).clock.factor, 3.0);
+  EXPECT_EQ(computer_of(shared, 2).clock.kind, computer::ClockKind::kScripted);
+  EXPECT_EQ(computer_of(shared, 2).clock.computing, std::chrono::milliseconds(4));
 
   const Condition& each = fleet.conditions[1];
   ASSERT_EQ(each.computers.size(), 3u);
   EXPECT_EQ(each.computers[1].name, "front-b");
   for (std::size_t i = 0; i < 3; ++i) EXPECT_FALSE(is_shared(each, i));
-  EXPECT_EQ(for_uav(each, 1).cpu_factor, 3.0);
-  EXPECT_TRUE(fleet.conditions[2].computers.empty());
-  EXPECT_EQ(for_uav(fleet.conditions[2], 1).cpu_factor, 1.0);
+  EXPECT_EQ(computer_of(each, 1).clock.factor, 3.0);
+  EXPECT_TRUE(fleet.conditions[2].seats.empty());
+  EXPECT_EQ(computer_of(fleet.conditions[2], 1).clock.factor, 1.0);
 }
 
 TEST_F(Seats, ASettingKeepsTheFirstUavsWithTheirMetricsAndComputers) {
@@ -91,7 +91,7 @@ TEST_F(Seats, ASettingKeepsTheFirstUavsWithTheirMetricsAndComputers) {
   ASSERT_EQ(two.conditions[0].computers.size(), 1u) << "nothing runs on the other one";
   EXPECT_TRUE(is_shared(two.conditions[0], 0));
   EXPECT_EQ(two.conditions[1].computers.size(), 2u);
-  EXPECT_EQ(for_uav(two.conditions[1], 1).computer, "front-b");
+  EXPECT_EQ(computer_of(two.conditions[1], 1).name, "front-b");
   EXPECT_FALSE(is_shared(load_scenario(file, {{"uavs", "1"}}).conditions[0], 0));
   for (const char* wrong : {"0", "4", "2.5", "-1", ""}) {
     const Error error = thrown_error(ErrorCode::kUsage, [&] {
@@ -105,15 +105,15 @@ TEST_F(Seats, SlowDownAndTargetsReachEveryComputerAndKeepWhoShares) {
   Scenario fleet = load(kFleet);
   Condition& shared = fleet.conditions[0];
   slow_down(shared, 2.0);
-  EXPECT_EQ(for_uav(shared, 0).cpu_factor, 6.0);
-  EXPECT_EQ(for_uav(shared, 2).computing, std::chrono::milliseconds(8));
+  EXPECT_EQ(computer_of(shared, 0).clock.factor, 6.0);
+  EXPECT_EQ(computer_of(shared, 2).clock.computing, std::chrono::milliseconds(8));
   Target slow;
-  slow.clock = Clock::kCpu;
-  slow.cpu_factor = 7.0;
+  slow.clock.kind = computer::ClockKind::kCpu;
+  slow.clock.factor = 7.0;
   place_on(shared, slow);
-  EXPECT_EQ(for_uav(shared, 2).cpu_factor, 7.0);
+  EXPECT_EQ(computer_of(shared, 2).clock.factor, 7.0);
   EXPECT_TRUE(is_shared(shared, 0));
-  slow.clock = Clock::kWall;
+  slow.clock.kind = computer::ClockKind::kWall;
   EXPECT_EQ(thrown_error(ErrorCode::kUsage, [&] { place_on(shared, slow); }).subject(), shared.name)
       << "one is pinned";
   shared.seats[1].pinned_core.reset();
@@ -134,10 +134,10 @@ TEST_F(Seats, RealBoardsAreThoseWithAWallClockAndSeveralUavs) {
   EXPECT_EQ(real_boards(wall.conditions[0], 3)[0].uavs.size(), 2u);
   EXPECT_TRUE(real_boards(wall.conditions[1], 3).empty()) << "not shared";
   Condition on_host;
-  on_host.clock = Clock::kWall;
+  on_host.computers[0].clock.kind = computer::ClockKind::kWall;
   EXPECT_TRUE(real_boards(on_host, 3).empty());
-  on_host.target.emplace().name = "pi";
-  on_host.target->ssh = SshAddress{"pi@rover"};
+  on_host.computers[0].target.emplace().name = "pi";
+  on_host.computers[0].target->ssh = SshAddress{"pi@rover"};
   EXPECT_TRUE(real_boards(on_host, 1).empty());
   ASSERT_EQ(real_boards(on_host, 3).size(), 1u);
   EXPECT_EQ(real_boards(on_host, 3)[0].uavs, (std::vector<std::size_t>{0, 1, 2}));

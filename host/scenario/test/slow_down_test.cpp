@@ -8,13 +8,13 @@ namespace tether::scenario {
 namespace {
 
 TEST(SlowDown, MultipliesTheFactorOfAClockAndNamesTheCondition) {
-  for (const Clock clock : {Clock::kCpu, Clock::kWall}) {
+  for (const computer::ClockKind clock : {computer::ClockKind::kCpu, computer::ClockKind::kWall}) {
     Condition condition;
     condition.name = "target";
-    condition.clock = clock;
-    condition.cpu_factor = 6.0;
+    condition.computers[0].clock.kind = clock;
+    condition.computers[0].clock.factor = 6.0;
     slow_down(condition, 2.5);
-    EXPECT_DOUBLE_EQ(condition.cpu_factor, 15.0);
+    EXPECT_DOUBLE_EQ(condition.computers[0].clock.factor, 15.0);
     EXPECT_EQ(condition.name, "target, 2.5 x slower");
     EXPECT_EQ(condition.slowed_from, "target");
     EXPECT_EQ(condition.slowdown, 2.5);
@@ -23,39 +23,39 @@ TEST(SlowDown, MultipliesTheFactorOfAClockAndNamesTheCondition) {
 
 TEST(SlowDown, MultipliesTheComputingTimeOfAScriptedClock) {
   Condition condition;
-  condition.clock = Clock::kScripted;
-  condition.computing = std::chrono::milliseconds(20);
+  condition.computers[0].clock.kind = computer::ClockKind::kScripted;
+  condition.computers[0].clock.computing = std::chrono::milliseconds(20);
   slow_down(condition, 1.5);
-  EXPECT_EQ(condition.computing, std::chrono::milliseconds(30));
-  EXPECT_EQ(condition.cpu_factor, 1.0);
+  EXPECT_EQ(condition.computers[0].clock.computing, std::chrono::milliseconds(30));
+  EXPECT_EQ(condition.computers[0].clock.factor, 1.0);
 }
 
 TEST(SlowDown, MultipliesTheCostsOfACountedClock) {
   Condition condition;
-  condition.clock = Clock::kCounted;
-  condition.target.emplace().emulator.emplace().cost_units = {3, 0, 10};
+  condition.computers[0].clock.kind = computer::ClockKind::kCounted;
+  condition.computers[0].target.emplace().emulator.emplace().cost_units = {3, 0, 10};
   slow_down(condition, 1.5);
-  EXPECT_THAT(condition.target->emulator->cost_units,
+  EXPECT_THAT(condition.computers[0].target->emulator->cost_units,
               testing::ElementsAre(5, 0, 15, 0, 0, 0, 0, 0, 0, 0));
-  EXPECT_EQ(condition.cpu_factor, 1.0);
+  EXPECT_EQ(condition.computers[0].clock.factor, 1.0);
 }
 
 TEST(SlowDown, LeavesDrawnTimesToTheirReplay) {
   Condition condition;
-  condition.clock = Clock::kReplayed;
+  condition.computers[0].clock.kind = computer::ClockKind::kReplayed;
   condition.replay.emplace().mode = timing::Mode::kResampled;
   slow_down(condition, 1.5);
   EXPECT_EQ(condition.slowdown, 1.5);
-  EXPECT_EQ(condition.cpu_factor, 1.0);
+  EXPECT_EQ(condition.computers[0].clock.factor, 1.0);
 }
 
 TEST(SlowDown, RefusesWhatCannotBeStretched) {
   Condition board, unstamped, free_wall, exact;
-  exact.clock = Clock::kReplayed;
+  exact.computers[0].clock.kind = computer::ClockKind::kReplayed;
   exact.replay.emplace().mode = timing::Mode::kExact;
-  board.target.emplace().ssh.emplace();
-  unstamped.clock = Clock::kUnstamped;
-  free_wall.clock = Clock::kWall;
+  board.computers[0].target.emplace().ssh.emplace();
+  unstamped.computers[0].clock.kind = computer::ClockKind::kUnstamped;
+  free_wall.computers[0].clock.kind = computer::ClockKind::kWall;
   free_wall.policy = Policy::kFreeRunning;
   for (Condition condition : {board, unstamped, free_wall, exact}) {
     condition.name = "c";

@@ -10,7 +10,7 @@ namespace {
 Target counted(std::initializer_list<std::uint64_t> costs) {
   Target target;
   target.file = "/counted.toml";
-  target.clock = Clock::kCounted;
+  target.clock.kind = computer::ClockKind::kCounted;
   os::Emulator& emulator = target.emulator.emplace();
   emulator.program = "qemu-x86_64";
   emulator.cost_units.fill(*costs.begin());
@@ -19,19 +19,19 @@ Target counted(std::initializer_list<std::uint64_t> costs) {
 }
 Condition on(const Target& target) {
   Condition condition;
-  condition.clock = target.clock;
-  condition.cpu_factor = target.cpu_factor;
-  condition.target = target;
+  condition.computers[0].clock = target.clock;
+  condition.computers[0].clock.factor = target.clock.factor;
+  condition.computers[0].target = target;
   return condition;
 }
 
 TEST(Slowness, IsTheRatioOfTheFactors) {
   Target board;
-  board.clock = Clock::kCpu;
-  board.cpu_factor = 6.0;
+  board.clock.kind = computer::ClockKind::kCpu;
+  board.clock.factor = 6.0;
   Condition condition;
-  condition.clock = Clock::kCpu;
-  condition.cpu_factor = 2.0;
+  condition.computers[0].clock.kind = computer::ClockKind::kCpu;
+  condition.computers[0].clock.factor = 2.0;
   EXPECT_EQ(slowness(board, condition).factor, 3.0);
   EXPECT_FALSE(slowness(board, condition).bounds);
   board.cpu_factor_interval = {5.0, 8.0};
@@ -51,14 +51,14 @@ TEST(Slowness, IsRefusedWhereThereIsNone) {
   Target over_ssh;
   over_ssh.ssh.emplace();
   Target by_factor;
-  by_factor.clock = Clock::kCpu;
+  by_factor.clock.kind = computer::ClockKind::kCpu;
   Target of_another_model = counted({10, 20});
   of_another_model.emulator->cpu_model = "another";
   for (const Target& target : {over_ssh, by_factor, of_another_model})
     EXPECT_EQ(thrown_error(ErrorCode::kUsage, [&] { slowness(target, condition); }).subject(),
               target.file.string());
   Condition scripted;
-  scripted.clock = Clock::kScripted;
+  scripted.computers[0].clock.kind = computer::ClockKind::kScripted;
   EXPECT_EQ(thrown_error(ErrorCode::kUsage, [&] { slowness(by_factor, scripted); }).subject(), "");
 }
 

@@ -19,9 +19,9 @@ namespace {
   throw Error(ErrorCode::kBadFile, {file.string()}, what).about(subject);
 }
 
+/// Without the computing time of a scripted clock, which the stages have.
 std::string clock_of(const record::SutInfo& sut) {
-  if (sut.cpu_factor != 1.0) return fmt::format("{}*{}", sut.clock, sut.cpu_factor);
-  return sut.clock;
+  return sut.clock.is_scaled() ? sut.clock.text() : std::string(computer::name(sut.clock.kind));
 }
 
 /// Empty: not known.
@@ -127,7 +127,7 @@ void require_scenario(const Timing& timing, const std::string& scenario,
 }
 
 void require_counted(const Timing& timing, const std::filesystem::path& file) {
-  if (timing.clock != link::name(link::ClockKind::kCounted))
+  if (timing.clock != computer::name(computer::ClockKind::kCounted))
     refuse(file, timing.clock,
            fmt::format("is of runs under the clock \"{}\", but counted work is needed. Fly under a "
                        "counted target, and write its timing.",

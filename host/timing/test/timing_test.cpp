@@ -25,8 +25,8 @@ record::Record sample_record() {
   record::SutInfo sut;
   sut.uav = "uav1";
   sut.sut = "sut 1.0";
-  sut.clock = "cpu";
-  sut.cpu_factor = 6.0;
+  sut.clock.kind = computer::ClockKind::kCpu;
+  sut.clock.factor = 6.0;
   sut.build_id = "0a";
   sut.build = {{"argument 1", "30"}};
   record.header.suts = {sut};

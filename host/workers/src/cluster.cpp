@@ -38,7 +38,7 @@ std::unique_ptr<Engine> make_engine(const ClusterOptions& options, const fs::pat
 }
 
 bool measures_cpu(const TrialPlan* plan) {
-  return plan->condition->clock == scenario::Clock::kCpu;
+  return computer_of(*plan->condition, 0).clock.kind == computer::ClockKind::kCpu;
 }
 
 /// Cores of each task; 0: each needs a machine of its own.
@@ -49,7 +49,8 @@ int cores_of(std::span<const TrialPlan* const> plans) {
     int cores = 1;
     // On `cores` cores, another trial beside it would be too many.
     const bool is_free = plan->condition->policy == scenario::Policy::kFreeRunning;
-    if (is_free || (plan->condition->target && plan->condition->target->cores > 0)) {
+    const auto& target = computer_of(*plan->condition, 0).target;
+    if (is_free || (target && target->cores > 0)) {
       while (cores <= kMostCores && campaign::parallel_trials(*plan, 2 * cores) < 2) ++cores;
       if (cores > kMostCores) return 0;
     }

@@ -16,9 +16,7 @@ link::Hello hello_for(const ConnectOptions& options) {
   link::Hello hello;
   hello.sut = options.sut_name;
   hello.uav = options.uav;
-  hello.clock = options.time->kind();
-  hello.cpu_factor = options.time->factor();
-  hello.computing = options.time->computing();
+  hello.clock = options.time->clock();
   hello.token = options.token;
   hello.build_id = build_id();
   hello.process = static_cast<std::uint32_t>(::getpid());
@@ -40,33 +38,32 @@ Result<link::Welcome> shake_hands(link::Channel& channel, const link::Hello& hel
 }
 
 /// In free running a virtual target is imitated by stalling.
-Status check_free_running(const link::Welcome& welcome, const TimeSource& time) {
+Status check_free_running(const link::Welcome& welcome, const computer::Clock& clock) {
   if (!welcome.free_running) return ok_status();
-  if (time.kind() == link::ClockKind::kCounted) {
+  if (clock.kind == computer::ClockKind::kCounted) {
     return Failure{
         Failure::Kind::kInvalid,
         "the clock \"counted\" is not allowed in free-running mode, where ST follows the "
         "wall clock: an emulated program takes longer than what it counts"};
   }
-  if (time.kind() == link::ClockKind::kReplayed) {
+  if (clock.kind == computer::ClockKind::kReplayed) {
     return Failure{Failure::Kind::kInvalid,
                    "the clock \"replayed\" is not allowed in free-running mode, where ST follows "
                    "the wall clock"};
   }
-  if (time.kind() == link::ClockKind::kWall && time.factor() != 1.0) {
+  if (clock.kind == computer::ClockKind::kWall && clock.is_scaled()) {
     return Failure{Failure::Kind::kInvalid,
                    "wall*FACTOR is not allowed in free-running mode, where ST follows the wall "
                    "clock. Use cpu*FACTOR"};
   }
-  if (time.factor() >= 1.0) return ok_status();
+  if (clock.factor >= 1.0) return ok_status();
   return Failure{Failure::Kind::kInvalid,
                  "a CPU clock factor below 1 is not allowed in free-running mode: stalling cannot "
                  "imitate a machine that is faster than this one"};
 }
 
 Result<std::unique_ptr<Vehicle>> connect_to_exec(const ConnectOptions& options) {
-  const TimeSource* const time = options.time.get();
-  if (time != nullptr && (time->kind() != link::ClockKind::kWall || time->factor() != 1.0)) {
+  if (options.time != nullptr && options.time->clock() != computer::Clock{}) {
     return Failure{Failure::Kind::kInvalid,
                    "under tether-exec, the program cannot choose its clock. Set TETHER_CLOCK for "
                    "tether-exec"};
@@ -79,14 +76,15 @@ Result<std::unique_ptr<Vehicle>> connect_to_exec(const ConnectOptions& options) 
 /// SUT sends it too.
 Duration progress_period(const ConnectOptions& options, const link::Welcome& welcome) {
   if (welcome.free_running) return options.heartbeat_period;
-  return link::repeats(options.time->kind()) ? Duration::zero() : options.progress_period;
+  return options.time->clock().repeats() ? Duration::zero() : options.progress_period;
 }
 
 Result<std::unique_ptr<Vehicle>> join(std::unique_ptr<link::Channel> channel,
                                       const link::Hello& hello, ConnectOptions options) {
   auto welcome = shake_hands(*channel, hello, options);
   if (!welcome) return welcome.failure();
-  if (const Status good = check_free_running(*welcome, *options.time); !good) return good.failure();
+  if (const Status good = check_free_running(*welcome, options.time->clock()); !good)
+    return good.failure();
   const Duration period = progress_period(options, *welcome);
   return std::unique_ptr<Vehicle>(std::make_unique<SimulatedVehicle>(
       std::move(channel), std::move(*welcome), std::move(options.time), make_wall_timer(), period));

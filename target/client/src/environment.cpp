@@ -1,9 +1,7 @@
 #include "clocks/counted_source.h"
 
 #include <cstdlib>
-#include <locale>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <utility>
 
@@ -25,56 +23,28 @@ Failure not_set(const std::string& name, const std::string& meaning) {
                                        meaning};
 }
 
-/// A decimal number that is all of the text, within the bounds; whatever the locale.
-std::optional<double> parse_number(const std::string& text, double least, double most) {
-  std::istringstream stream(text);
-  stream.imbue(std::locale::classic());
-  double value = 0.0;
-  if (!(stream >> value) || stream.peek() != std::istringstream::traits_type::eof()) return {};
-  if (!(value >= least && value <= most)) return {};
-  return value;
-}
-
-/// What follows `prefix` in `text`, if it begins so.
-std::optional<std::string> after(const std::string& text, const std::string& prefix) {
-  if (text.rfind(prefix, 0) != 0) return std::nullopt;
-  return text.substr(prefix.size());
-}
-
-/// Null: not a clock.
-std::unique_ptr<TimeSource> make_source(const std::string& text) {
-  if (text == "wall") return make_wall_source();
-  if (text == "cpu") return make_cpu_source(1.0);
-  if (text == "replayed") return make_replayed_source();
-  if (const auto factor = after(text, "wall*")) {
-    const auto value = parse_number(*factor, 1e-6, 1e6);
-    return value ? make_wall_source(*value) : nullptr;
-  }
-  if (const auto factor = after(text, "cpu*")) {
-    const auto value = parse_number(*factor, 1e-6, 1e6);
-    return value ? make_cpu_source(*value) : nullptr;
-  }
-  if (const auto step_ms = after(text, "scripted*")) {
-    const auto value = parse_number(*step_ms, 1e-6, 1e6);
-    return value ? make_scripted_source(duration_from_seconds(*value * 1e-3)) : nullptr;
-  }
-  return nullptr;
-}
-
 }  // namespace
 
 Result<std::unique_ptr<TimeSource>> parse_time_source(const std::string& text) {
-  if (text == "counted") return make_counted_source(variable("TETHER_COUNTS").value_or(""));
-  if (auto source = make_source(text)) return source;
-  if (text == "unstamped")
-    return Failure{Failure::Kind::kInvalid,
-                   "'unstamped' is for clients that do not stamp their requests; this library "
-                   "always does. Use another clock in the condition"};
-  return Failure{
-      Failure::Kind::kInvalid,
-      "'" + text +
-          "' is not a clock. Allowed: wall, cpu, wall*FACTOR or cpu*FACTOR (cpu*4: a target "
-          "that is four times slower; 1e-6 to 1e6), counted, replayed, scripted*MILLISECONDS"};
+  const auto clock = computer::parse_clock(text);
+  if (!clock) return clock.failure();
+  switch (clock->kind) {
+    case computer::ClockKind::kWall:
+      return make_wall_source(clock->factor);
+    case computer::ClockKind::kCpu:
+      return make_cpu_source(clock->factor);
+    case computer::ClockKind::kScripted:
+      return make_scripted_source(clock->computing);
+    case computer::ClockKind::kCounted:
+      return make_counted_source(variable("TETHER_COUNTS").value_or(""));
+    case computer::ClockKind::kReplayed:
+      return make_replayed_source();
+    case computer::ClockKind::kUnstamped:
+      break;
+  }
+  return Failure{Failure::Kind::kInvalid,
+                 "'unstamped' is for clients that do not stamp their requests; this library "
+                 "always does. Use another clock in the condition"};
 }
 
 Result<ConnectOptions> options_from_environment() {

@@ -39,21 +39,22 @@ TEST_F(Environment, GivesEverything) {
   EXPECT_EQ(options->address, (link::Address{"127.0.0.1", 5200}));
   EXPECT_EQ(options->token, "secret");
   EXPECT_EQ(options->uav, "scout");
-  EXPECT_EQ(options->time->kind(), link::ClockKind::kCpu);
-  EXPECT_EQ(options->time->factor(), 2.5);
+  EXPECT_EQ(options->time->clock().kind, computer::ClockKind::kCpu);
+  EXPECT_EQ(options->time->clock().factor, 2.5);
 }
 
 TEST_F(Environment, KnowsClocks) {
   EXPECT_EQ(options_from_environment()->uav, "");
-  EXPECT_EQ(options_from_environment()->time->kind(), link::ClockKind::kWall);
+  EXPECT_EQ(options_from_environment()->time->clock().kind, computer::ClockKind::kWall);
   for (const auto& [text, kind] :
-       {std::pair{"wall", link::ClockKind::kWall}, std::pair{"cpu", link::ClockKind::kCpu},
-        std::pair{"cpu*0.5", link::ClockKind::kCpu}, std::pair{"wall*4", link::ClockKind::kWall},
-        std::pair{"scripted*12.5", link::ClockKind::kScripted}}) {
+       {std::pair{"wall", computer::ClockKind::kWall}, std::pair{"cpu", computer::ClockKind::kCpu},
+        std::pair{"cpu*0.5", computer::ClockKind::kCpu},
+        std::pair{"wall*4", computer::ClockKind::kWall},
+        std::pair{"scripted*12.5", computer::ClockKind::kScripted}}) {
     set("TETHER_CLOCK", text);
     const auto options = options_from_environment();
     ASSERT_TRUE(options.ok()) << text;
-    EXPECT_EQ(options->time->kind(), kind) << text;
+    EXPECT_EQ(options->time->clock().kind, kind) << text;
   }
 }
 

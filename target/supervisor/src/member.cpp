@@ -110,8 +110,7 @@ void Member::connect(const link::Hello& hello) {
   link::Hello own;
   own.sut = hello.sut;
   own.uav = uav_.empty() ? hello.uav : uav_;
-  own.clock = link::ClockKind::kWall;
-  own.cpu_factor = settings_.factor;
+  own.clock = {computer::ClockKind::kWall, settings_.factor};
   own.token = settings_.token;
   own.concurrent = true;
   // If it does not go out, the coordinator may have said why before it closed.

@@ -43,9 +43,7 @@ std::atomic<std::int64_t> g_ahead_ns{0};  // of what it truly measures
 class LyingSource final : public tether::client::TimeSource {
  public:
   explicit LyingSource(std::unique_ptr<TimeSource> right) : right_(std::move(right)) {}
-  tether::link::ClockKind kind() const override { return right_->kind(); }
-  double factor() const override { return right_->factor(); }
-  tether::Duration computing() const override { return right_->computing(); }
+  tether::computer::Clock clock() const override { return right_->clock(); }
   tether::Duration elapsed() const override {
     return right_->elapsed() + tether::Duration(g_ahead_ns.load());
   }
@@ -148,9 +146,7 @@ tether::link::Hello hello_of_this_run() {
   tether::link::Hello hello;
   hello.sut = "bad_sut";
   const auto time = tether::client::parse_time_source(std::getenv("TETHER_CLOCK")).value();
-  hello.clock = time->kind();
-  hello.cpu_factor = time->factor();
-  hello.computing = time->computing();
+  hello.clock = time->clock();
   hello.token = std::getenv("TETHER_TOKEN");
   hello.uav = std::getenv("TETHER_UAV");
   return hello;

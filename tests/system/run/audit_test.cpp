@@ -180,7 +180,8 @@ TEST_F(AuditOfAFlight, FindsWhatContradictsTheRestOfTheRecord) {
          r.footer->end = "sut_lost";
        }},
 
-      {"scripted computing", 5, [](Record& r) { r.header.suts[0].computing = milliseconds(3); }},
+      {"scripted computing", 5,
+       [](Record& r) { r.header.suts[0].clock.computing = milliseconds(3); }},
       {"a stage", 5,
        [](Record& r) {
          one_of<record::Interaction>(r.interactions,
@@ -198,7 +199,7 @@ TEST_F(AuditOfAFlight, FindsWhatContradictsTheRestOfTheRecord) {
       {"period of the ground truth", 0, [](Record& r) { r.header.ground_truth_period *= 2; }},
       {"latency of commands", 2,
        [](Record& r) { r.header.suts[0].command_latency += milliseconds(1); }},
-      {"clock", 6, [](Record& r) { r.header.suts[0].clock = "cpu"; }},
+      {"clock", 6, [](Record& r) { r.header.suts[0].clock.kind = computer::ClockKind::kCpu; }},
   };
   expect_found(fly("fly_down", {kEnergy}), changes);
 }

@@ -22,7 +22,6 @@
 namespace tether::system_test {
 namespace {
 
-using scenario::Clock;
 using scenario::ShippedKind;
 
 struct Flight {
@@ -46,11 +45,12 @@ void PrintTo(const Flight& flight, std::ostream* stream) {
 
 std::string why_skipped(const scenario::Condition& condition, std::size_t suts) {
   if (condition.simulator != "mujoco") return "needs " + condition.simulator;
-  if (!condition.target) return "";
-  if (condition.target->ssh) return "needs a board";
-  if (static_cast<std::size_t>(condition.target->cores) * suts > os::allowed_cpus().size())
+  if (!condition.computers[0].target) return "";
+  if (condition.computers[0].target->ssh) return "needs a board";
+  if (static_cast<std::size_t>(condition.computers[0].target->cores) * suts >
+      os::allowed_cpus().size())
     return "needs more cores";
-  const auto& programs = condition.target->program_folder;
+  const auto& programs = condition.computers[0].target->program_folder;
   const bool are_there = programs.empty() || std::filesystem::exists(programs);
   return are_there ? "" : "needs programs for ARM: run scripts/build-arm64";
 }
@@ -64,13 +64,14 @@ std::vector<Flight> flights_of(const std::string& name,
       scenario::load_scenario(TETHER_SOURCE_DIR "/data/scenarios/" + name + ".toml");
   for (const scenario::Condition& condition : loaded.conditions) {
     // By --target, below. The folder of programs is not found from a copy of the scenario.
-    if (condition.target && !condition.target->program_folder.empty()) continue;
+    if (condition.computers[0].target && !condition.computers[0].target->program_folder.empty())
+      continue;
     flights.push_back({name,
                        condition.name,
                        {},
                        false,
                        why_skipped(condition, loaded.uavs.size()),
-                       std::max(0.3, 12.0 * to_seconds(condition.computing))});
+                       std::max(0.3, 12.0 * to_seconds(condition.computers[0].clock.computing))});
   }
   for (std::size_t i = 0; i < targets.size(); ++i) {
     const scenario::Target& target = targets[i];
@@ -81,7 +82,7 @@ std::vector<Flight> flights_of(const std::string& name,
     place_on(condition, target);
     const std::string skipped = why_skipped(condition, loaded.uavs.size());
     for (const bool concurrent : {false, true})
-      if (!concurrent || target.clock == Clock::kWall)
+      if (!concurrent || target.clock.kind == computer::ClockKind::kWall)
         flights.push_back({name, loaded.conditions.front().name, target, concurrent, skipped, 0.3,
                            (i + first_pair) % 4 == 0});
   }

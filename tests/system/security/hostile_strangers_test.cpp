@@ -25,8 +25,7 @@ using namespace std::chrono_literals;
 link::Hello hello_with(const std::string& token) {
   link::Hello hello;
   hello.sut = "hostile";
-  hello.clock = link::ClockKind::kScripted;
-  hello.computing = 2ms;
+  hello.clock = {computer::ClockKind::kScripted, 1.0, 2ms};
   hello.token = token;
   return hello;
 }

@@ -33,8 +33,7 @@ link::Hello hello_for(const std::string& uav) {
   link::Hello hello;
   hello.sut = "hostile 1.0";
   hello.uav = uav;
-  hello.clock = link::ClockKind::kScripted;
-  hello.computing = 2ms;
+  hello.clock = {computer::ClockKind::kScripted, 1.0, 2ms};
   hello.token = ExternalRun::token();
   return hello;
 }

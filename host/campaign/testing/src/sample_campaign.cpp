@@ -1,10 +1,23 @@
 #include <tether/campaign_testing/sample_campaign.h>
 
 namespace tether::campaign {
+namespace {
+
+using scenario::Policy;
+
+scenario::Condition on_cpu(const char* name, Policy policy, double factor,
+                           double real_time_factor) {
+  scenario::Condition condition;
+  condition.name = name;
+  condition.policy = policy;
+  condition.real_time_factor = real_time_factor;
+  condition.computers[0].clock = {computer::ClockKind::kCpu, factor};
+  return condition;
+}
+
+}  // namespace
 
 scenario::Campaign make_campaign(const ScratchFolder& scratch) {
-  using scenario::Clock;
-  using scenario::Policy;
   scenario::Scenario s;
   s.file = scratch.write("in/turn.toml", "the scenario");
   s.world = scratch.write("in/room.sdf", "the world");
@@ -12,9 +25,9 @@ scenario::Campaign make_campaign(const ScratchFolder& scratch) {
   s.name = "turn";
   s.description = "turn to the box";
   s.uavs.resize(1);
-  s.conditions = {{"host", "", Policy::kConservativeBarrier, Clock::kCpu, 1.0, 0.0},
-                  {"target", "", Policy::kConservativeBarrier, Clock::kCpu, 8.0, 0.0},
-                  {"target, no sync", "", Policy::kFreeRunning, Clock::kCpu, 8.0, 0.25}};
+  s.conditions = {on_cpu("host", Policy::kConservativeBarrier, 1.0, 0.0),
+                  on_cpu("target", Policy::kConservativeBarrier, 8.0, 0.0),
+                  on_cpu("target, no sync", Policy::kFreeRunning, 8.0, 0.25)};
   s.metrics = {{"oscillations", "oscillations", "Oscillations", "1", "uav1", "box", 0.02, {}},
                {"time_required", "time_required", "Time required", "s", "uav1", "", 0.0, 30.0}};
   scenario::Campaign campaign;
@@ -35,8 +48,14 @@ TrialResult make_trial(const scenario::Scenario& scenario, const std::string& co
   result.metrics[0].value = oscillations;
   result.metrics[1].value = time_required_s;
   for (MetricValue& metric : result.metrics) metric.missing_because = "";
-  result.suts = {{"uav1", "tether-sut 0.1.0", "cpu", 8.0, ExecTime(std::chrono::seconds(3)), true,
-                  true, "the anchor is in the middle", R"({"steps":12})"}};
+  result.suts = {{"uav1",
+                  "tether-sut 0.1.0",
+                  {computer::ClockKind::kCpu, 8.0},
+                  ExecTime(std::chrono::seconds(3)),
+                  true,
+                  true,
+                  "the anchor is in the middle",
+                  R"({"steps":12})"}};
   result.sync = {120, 0, Duration(999'999), SimTime(Duration(2'481'000'001))};
   const SimTime early(Duration(1'000'000'001));
   result.contacts = {{"uav1", 2, 0, record::Contact{"uav1", early, "room", 0.25},

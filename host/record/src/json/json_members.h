@@ -44,6 +44,8 @@ class MemberWriter {
       object_.integer(name, value);
     } else if constexpr (std::is_same_v<Value, double>) {
       object_.number(name, value);
+    } else if constexpr (std::is_same_v<Value, computer::ClockKind>) {
+      object_.text(name, computer::name(value));
     } else if constexpr (std::is_array_v<Value>) {
       object_.numbers(name, value);
     } else if constexpr (Time<Value>) {
@@ -113,6 +115,11 @@ class MemberReader {
   void operator()(const char* name, double& value) const { value = number_member(object_, name); }
   void operator()(const char* name, std::uint64_t& value) const {
     value = unsigned_member(object_, name);
+  }
+  void operator()(const char* name, computer::ClockKind& kind) const {
+    kind = computer::clock_kind(text_member(object_, name));
+    if (kind == computer::ClockKind{computer::kClockKinds})
+      throw Damage("member", name, "is not the name of a clock");
   }
   template <Time Value>
   void operator()(const char* name, Value& value) const {

@@ -196,9 +196,9 @@ void members(auto& io, Maybe<Annotation> auto& m) {
   io("topic", m.topic);
 }
 
-void members(auto& io, Maybe<ClockInfo> auto& m) {
-  io("clock", m.clock);
-  io("cpu_factor", m.cpu_factor);
+void members(auto& io, Maybe<computer::Clock> auto& m) {
+  io("clock", m.kind);
+  io("cpu_factor", m.factor);
   if (io.has("computing_ns", m.computing > Duration(0))) io("computing_ns", m.computing);
 }
 
@@ -235,14 +235,15 @@ void members(auto& io, Maybe<SutInfo> auto& m) {
   constexpr int kMostCores = 1024;
   io("uav", m.uav);
   io("sut", m.sut);
-  io("clock", m.clock);
-  io("cpu_factor", m.cpu_factor);
+  io("clock", m.clock.kind);
+  io("cpu_factor", m.clock.factor);
   io("command_latency_ns", m.command_latency);
   io.flag("concurrent", m.concurrent);
   if (io.has("cores", m.cores > 0)) io.within("cores", m.cores, 1, kMostCores);
   if (io.has("max_acceleration_m_s2", m.max_acceleration_m_s2 > 0.0))
     io.positive("max_acceleration_m_s2", m.max_acceleration_m_s2);
-  if (io.has("computing_ns", m.computing > Duration(0))) io("computing_ns", m.computing);
+  if (io.has("computing_ns", m.clock.computing > Duration(0)))
+    io("computing_ns", m.clock.computing);
   if (io.has("required_clock", m.required_clock.has_value()))
     io.object("required_clock",
               [&](auto& clock) { members(clock, io.value_of(m.required_clock)); });

@@ -153,7 +153,7 @@ std::string known_cause(const campaign::TrialResult& flight, const std::optional
 /// Whether times between calls contain what a program waits in between, which no computer shortens.
 bool measures_waits(const Pace& pace) {
   return std::ranges::any_of(pace.speed.programs, [](const Speed::Program& program) {
-    return program.clock == "wall" || program.clock == "unstamped";
+    return program.clock.counts_waiting();
   });
 }
 

@@ -120,8 +120,6 @@ Speed speed_of(const record::Header& header) {
   for (const record::SutInfo& sut : header.suts)
     speed.programs.push_back({.uav = sut.uav,
                               .clock = sut.clock,
-                              .cpu_factor = sut.cpu_factor,
-                              .computing = sut.computing,
                               .replay = sut.replay,
                               .board = sut.board,
                               .computer = sut.computer,
@@ -133,13 +131,13 @@ Speed speed_of(const record::Header& header) {
 
 bool Speed::is_scripted() const {
   return !programs.empty() && std::ranges::all_of(programs, [](const Program& program) {
-    return program.clock == scenario::name(scenario::Clock::kScripted);
+    return program.clock.kind == computer::ClockKind::kScripted;
   });
 }
 
 bool Speed::is_instant() const {
   return is_scripted() && std::ranges::all_of(programs, [](const Program& program) {
-           return program.computing <= kNoTime;
+           return program.clock.computing <= kNoTime;
          });
 }
 

@@ -82,7 +82,7 @@ void add_circumstances(Rows& rows, const campaign::TrialResult& result) {
                     fmt::format("{:.3f} s in {:.3f} s of wall time, {} interactions",
                                 to_seconds(result.sync.st_at_end), to_seconds(result.this_run.wall),
                                 result.sync.interactions));
-  if (result.clock == scenario::name(scenario::Clock::kUnstamped))
+  if (result.clock.kind == computer::ClockKind::kUnstamped)
     rows.emplace_back("clock",
                       "unstamped: the coordinator measured the SUT's time, which includes the "
                       "link's");

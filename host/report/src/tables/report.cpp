@@ -201,7 +201,7 @@ std::vector<Comparison> compare_where(const campaign::ScenarioResults& scenario,
 bool have_equal_clocks(const campaign::TrialResult& a, const campaign::TrialResult& b) {
   if (!a.emulator.program.empty())
     return b.condition == fmt::format("{}, no sync", without_clock(a.condition));
-  return a.clock == b.clock && a.cpu_factor == b.cpu_factor && a.target == b.target;
+  return a.clock == b.clock && a.target == b.target;
 }
 
 bool is_synchronised_twin(const campaign::ConditionResults& a,

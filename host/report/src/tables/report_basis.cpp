@@ -43,11 +43,12 @@ std::size_t noted_trials(const campaign::ConditionResults& condition) {
 }
 
 std::string condition_text(const campaign::TrialResult& trial) {
-  std::string text = fmt::format("{}: {}, {} clock", trial.condition, trial.policy, trial.clock);
-  if (trial.clock == "cpu" || (trial.clock == "wall" && trial.cpu_factor != 1.0))
-    text += fmt::format(" × {}", trial.cpu_factor);
-  if (trial.computing > Duration{0})
-    text += fmt::format(", {} ms per computing phase", 1e3 * to_seconds(trial.computing));
+  std::string text = fmt::format("{}: {}, {} clock", trial.condition, trial.policy,
+                                 computer::name(trial.clock.kind));
+  if (trial.clock.kind == computer::ClockKind::kCpu || trial.clock.is_scaled())
+    text += fmt::format(" × {}", trial.clock.factor);
+  if (trial.clock.computing > Duration{0})
+    text += fmt::format(", {} ms per computing phase", 1e3 * to_seconds(trial.clock.computing));
   if (trial.real_time_factor > 0.0) {
     text += fmt::format(", real-time factor at most {}", trial.real_time_factor);
   }

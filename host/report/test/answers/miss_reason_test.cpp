@@ -26,7 +26,8 @@ class MissReasons : public testing::Test {
       trial.metrics[0].max = 5.0;
       trial.profiles = {"paper_streaming"};
       trial.versions["simulator"] = "MuJoCo";
-      trial.suts = {{.uav = "uav1", .sut = "s", .clock = "cpu", .reached_goal = true}};
+      trial.suts = {
+          {.uav = "uav1", .sut = "s", .clock = {computer::ClockKind::kCpu}, .reached_goal = true}};
       if (!trial.metrics[0].is_met()) trial.outcome = campaign::Outcome::kGoalMissed;
     }
     paces_.emplace_back(std::move(pace));
@@ -48,13 +49,14 @@ class MissReasons : public testing::Test {
               .offered_hz = 30.0,
               .median_s = image_s,
               .p95_s = image_s};
-    pace.speed.programs = {{.uav = "uav1", .clock = "cpu"}};
+    pace.speed.programs = {{.uav = "uav1", .clock = {computer::ClockKind::kCpu}}};
     pace.speed.machine = "here";
     return pace;
   }
   static Pace scripted(Duration computing) {
     Pace pace = measured(to_seconds(computing));
-    pace.speed.programs = {{.uav = "uav1", .clock = "scripted", .computing = computing}};
+    pace.speed.programs = {
+        {.uav = "uav1", .clock = {computer::ClockKind::kScripted, 1.0, computing}}};
     pace.speed.machine.clear();
     return pace;
   }
@@ -81,7 +83,7 @@ TEST_F(MissReasons, AreNotKnownWithoutAReference) {
 TEST_F(MissReasons, AreSpeedIfAFasterConditionReachesTheGoal) {
   const std::size_t board = add("board", 0, 5, measured(0.2));
   const std::size_t host = add("host", 5, 0, measured(0.02));
-  program(board).cpu_factor = 10.0;
+  program(board).clock.factor = 10.0;
   EXPECT_EQ(ruling(board), Ruling::kNotFastEnough);
   EXPECT_EQ(verdict().conditions[board].miss->evidence, Evidence::kFasterReaches);
   EXPECT_THAT(answers_of({verdict()})[0].rest,
@@ -111,7 +113,7 @@ TEST_F(MissReasons, AreSpeedIfAFasterConditionReachesTheGoal) {
 TEST_F(MissReasons, NeedMoreThanChance) {
   const std::size_t board = add("board", 0, 2, measured(0.2));
   const std::size_t host = add("host", 2, 0, measured(0.02));
-  program(board).cpu_factor = 10.0;
+  program(board).clock.factor = 10.0;
   EXPECT_EQ(ruling(board), Ruling::kGoalMissed);
   for (const std::size_t condition : {board, host})
     for (campaign::TrialResult& trial : trials(condition)) trial.flight_digest = "same";
@@ -140,7 +142,7 @@ TEST_F(MissReasons, AreSpeedIfComputingAloneTakesLongerThanALimit) {
 
 TEST_F(MissReasons, AreNotSpeedByAWallClockThatMeasuresWaitsToo) {
   Pace pace = measured(0.2);
-  pace.speed.programs[0].clock = "wall";
+  pace.speed.programs[0].clock.kind = computer::ClockKind::kWall;
   const std::size_t board = add("board", 0, 1, pace);
   trials(board)[0].clauses = {{.uav = "uav1",
                                .name = "quick",
@@ -209,7 +211,7 @@ TEST_F(MissReasons, AreNotTheTaskThatDidNotRunIfOneBeforeItWasLate) {
 TEST_F(MissReasons, AreProbablyNotSpeedIfAFasterProgramThatReadsEveryImageMissesToo) {
   const std::size_t board = add("board", 0, 5, measured(0.2));
   const std::size_t host = add("host", 0, 5, measured(0.02));
-  program(board).cpu_factor = 10.0;
+  program(board).clock.factor = 10.0;
   EXPECT_EQ(ruling(board), Ruling::kOtherReason);
   EXPECT_EQ(verdict().conditions[board].miss->evidence, Evidence::kFasterMissesToo);
   EXPECT_EQ(ruling(host), Ruling::kGoalMissed);
@@ -247,7 +249,7 @@ TEST_F(MissReasons, LeaveItOpenIfAnotherSpeedSuffices) {
   const std::size_t board = add("board", 0, 5, measured(0.2));
   add("instant", 0, 5, instant());
   add("host", 5, 0, measured(0.02));
-  program(board).cpu_factor = 10.0;
+  program(board).clock.factor = 10.0;
   EXPECT_EQ(ruling(board), Ruling::kNotFastEnough);
 }
 
@@ -278,7 +280,7 @@ TEST_F(MissReasons, CompareOnlyWhatIsEquallyFast) {
     EXPECT_EQ(ruling(poor), Ruling::kGoalMissed) << what;
     paces_[poor] = before;
   };
-  program(poor).cpu_factor = 6.0;
+  program(poor).clock.factor = 6.0;
   expect_not("a slower computer");
   program(poor).board = "shared";
   expect_not("a shared board");

@@ -57,14 +57,13 @@ TEST(Pace, HasTheSpeedOfAllPrograms) {
   record.header.suts.push_back(record.header.suts[0]);
   record::SutInfo& other = record.header.suts[1];
   other.uav = "uav2";
-  other.cpu_factor = 6.0;
+  other.clock.factor = 6.0;
   other.board = other.computer = "obc";
   other.pinned_core = 1;
   const Speed speed = pace_of(record)->speed;
   ASSERT_EQ(speed.programs.size(), 2u);
   EXPECT_EQ(speed.programs[1], (Speed::Program{.uav = "uav2",
-                                               .clock = "cpu",
-                                               .cpu_factor = 6.0,
+                                               .clock = {computer::ClockKind::kCpu, 6.0},
                                                .board = "obc",
                                                .computer = "obc",
                                                .pinned_core = 1}));
@@ -76,12 +75,13 @@ TEST(Pace, HasTheSpeedOfAllPrograms) {
 }
 
 TEST(Speed, IsInstantIfNoProgramIsChargedTime) {
-  Speed speed{.programs = {{.clock = "scripted", .computing = std::chrono::microseconds(1)},
-                           {.clock = "scripted", .computing = std::chrono::microseconds(10)}}};
+  Speed speed{.programs = {
+                  {.clock = {computer::ClockKind::kScripted, 1.0, std::chrono::microseconds(1)}},
+                  {.clock = {computer::ClockKind::kScripted, 1.0, std::chrono::microseconds(10)}}}};
   EXPECT_TRUE(speed.is_scripted() && speed.is_instant());
-  speed.programs[1].computing = std::chrono::microseconds(11);
+  speed.programs[1].clock.computing = std::chrono::microseconds(11);
   EXPECT_TRUE(speed.is_scripted() && !speed.is_instant());
-  speed.programs[1] = {.clock = "cpu"};
+  speed.programs[1] = {.clock = {computer::ClockKind::kCpu}};
   EXPECT_FALSE(speed.is_scripted() || speed.is_instant());
   EXPECT_FALSE(Speed{}.is_instant());
 }

@@ -32,7 +32,7 @@ campaign::TrialResult flight() {
   result.condition = "host";
   result.seed = 7;
   result.policy = "conservative_barrier";
-  result.clock = "cpu";
+  result.clock.kind = computer::ClockKind::kCpu;
   result.outcome = campaign::Outcome::kGoalReached;
   result.end = campaign::kEndFinished;
   result.reason = "every SUT reached its goal within the limits";
@@ -131,7 +131,7 @@ TEST(RunText, NamesTheRecordOnlyIfThereIsOne) {
 TEST(RunText, SaysWhatTheTimeOfAnUnstampedClockIncludes) {
   const ScratchFolder scratch;
   campaign::TrialResult result = flight();
-  result.clock = "unstamped";
+  result.clock.kind = computer::ClockKind::kUnstamped;
   EXPECT_THAT(run_text(result, scratch.path("run")),
               HasSubstr("  clock      unstamped: the coordinator measured the SUT's time, which "
                         "includes the link's\n"));

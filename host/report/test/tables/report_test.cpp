@@ -95,7 +95,7 @@ TEST_F(Report, ComparesACountedConditionWithThatOfItsNameWithoutTheClock) {
   counted.conditions[1].condition = "target, counted";
   for (TrialResult& trial : counted.conditions[1].trials) {
     trial.condition = "target, counted";
-    trial.clock = "counted";
+    trial.clock.kind = computer::ClockKind::kCounted;
     trial.emulator.program = "qemu-x86_64";
   }
   const Table table = paper_form_table(counted);
@@ -142,15 +142,14 @@ TEST_F(Report, StatesTheOptimismOfTheSameTargetAndSensors) {
 
 TEST_F(Report, BasisHasClocksAuditsAndStops) {
   TrialResult wall = trial("target", 1, 0, 3);
-  wall.clock = "wall";
-  wall.cpu_factor = 4.0;
+  wall.clock.kind = computer::ClockKind::kWall;
+  wall.clock.factor = 4.0;
   wall.target = "slow_board";
   wall.audit = AuditVerdict{false, "a command in the past"};
   wall.sync.causality_violations = 2;
   wall.sync.stops = StopFigures{100, Duration(70'000)};
   TrialResult scripted = trial("target", 2, 0, 3);
-  scripted.clock = "scripted";
-  scripted.computing = Duration(2'500'000);
+  scripted.clock = {computer::ClockKind::kScripted, 1.0, Duration(2'500'000)};
   scripted.sync.stops = StopFigures{200, Duration(35'000)};
   EXPECT_THAT(basis_table(all()).rows, Not(Contains(Contains("Stops of all threads"))));
   write(wall);

@@ -1,7 +1,7 @@
 #include "files/named_file.h"
 #include "files/scenario_keys.h"
 #include "files/settings.h"
-#include "tables/read_clock_rate.h"
+#include "tables/read_clock.h"
 #include "tables/read_computers.h"
 #include "tables/read_radio.h"
 #include "tables/read_replay.h"
@@ -24,8 +24,6 @@ namespace tether::scenario {
 namespace {
 
 constexpr std::array<std::string_view, 2> kPolicies = {"conservative_barrier", "free_running"};
-constexpr std::array<std::string_view, 6> kClocks = {"wall",      "cpu",     "scripted",
-                                                     "unstamped", "counted", "replayed"};
 constexpr std::array<std::string_view, 2> kSimulators = {"mujoco", "gazebo"};
 
 constexpr double kLongestRun_s = 7 * 24 * 3600.0;
@@ -108,26 +106,22 @@ void read_uavs(const toml::Table& root, Scenario& scenario) {
 // Conditions.
 
 // Some keys and values need a certain clock or policy.
-void read_clock(const toml::Table& table, Condition& condition) {
+void read_own_clock(const toml::Table& table, Condition& condition) {
+  using enum computer::ClockKind;
   if (!table.has("clock")) {
     table.fail("clock", "is missing. Add it, or a 'target' whose file specifies the clock.");
   }
-  condition.clock = static_cast<Clock>(table.choice("clock", kClocks));
-  if (condition.clock == Clock::kCounted)
+  const computer::Clock clock =
+      read_clock(table, {kWall, kCpu, kScripted, kUnstamped, kCounted, kReplayed});
+  if (clock.kind == kCounted)
     table.fail("clock",
                "is \"counted\", which needs an emulator and costs. Name a 'target' whose file has "
                "them, instead of this key.");
-  const ClockRate rate = read_clock_rate(table, condition.clock);
-  condition.cpu_factor = rate.cpu_factor;
-  condition.computing = rate.computing;
-  const bool needs_barrier = condition.clock == Clock::kScripted ||
-                             condition.clock == Clock::kUnstamped ||
-                             condition.clock == Clock::kReplayed;
-  if (needs_barrier && condition.policy == Policy::kFreeRunning) {
+  if (clock.needs_barrier() && condition.policy == Policy::kFreeRunning)
     table.fail("clock", fmt::format("is \"{}\", which needs policy = \"conservative_barrier\", "
                                     "because free running uses the wall clock.",
-                                    name(condition.clock)));
-  }
+                                    computer::name(clock.kind)));
+  condition.computers.front().clock = clock;
 }
 
 // The target's file specifies how the time of its SUTs is measured.
@@ -136,12 +130,12 @@ void read_target(const toml::Table& table, Condition& condition, Scenario& scena
     if (table.has(key))
       table.fail(key, "is specified by the target's file. Remove this key, or 'target'.");
   }
-  Target target = load_target(named_file(table, "target", ShippedKind::kTarget));
+  const Target target = load_target(named_file(table, "target", ShippedKind::kTarget));
   if (const std::string why = why_not_on(condition, target); !why.empty()) {
     table.fail("target", fmt::format("cannot be used here: {}", why));
   }
   scenario.files.push_back(target.file);
-  place_on(condition, std::move(target));
+  place_on(condition, target);
 }
 
 Condition read_condition(const toml::Table& table, Scenario& scenario) {
@@ -164,7 +158,7 @@ Condition read_condition(const toml::Table& table, Scenario& scenario) {
   } else if (!has_own && !scenario.computers.empty()) {
     read_seats(table, condition, scenario);
   } else {
-    read_clock(table, condition);
+    read_own_clock(table, condition);
   }
   condition.replay = read_replay(table, condition, scenario);
   if (table.has("radio")) condition.radio = read_radio(table);
@@ -343,9 +337,6 @@ void read_limits(const toml::Table& root, Scenario& scenario) {
 
 std::string_view name(Policy policy) {
   return kPolicies[static_cast<std::size_t>(policy)];
-}
-std::string_view name(Clock clock) {
-  return kClocks[static_cast<std::size_t>(clock)];
 }
 
 std::string slug(std::string_view name) {

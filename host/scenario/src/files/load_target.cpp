@@ -12,8 +12,8 @@
 namespace tether::scenario {
 namespace {
 
-constexpr std::array<std::string_view, 3> kTargetClocks = {"wall", "cpu", "counted"};
-constexpr std::array<Clock, 3> kClocksOfTargets = {Clock::kWall, Clock::kCpu, Clock::kCounted};
+constexpr computer::ClockKind kClocks[] = {computer::ClockKind::kWall, computer::ClockKind::kCpu,
+                                           computer::ClockKind::kCounted};
 constexpr std::array<std::string_view, 2> kEmulators = {"qemu-aarch64", "qemu-x86_64"};
 constexpr std::int64_t kMostCores = 4096;
 
@@ -29,10 +29,10 @@ std::optional<SshAddress> read_address(const toml::Table& root) {
 
 /// A board is measured, not slowed down, and uses all of its cores.
 void reject_keys_of_virtual_targets(const toml::Table& root, const Target& target) {
-  if (target.clock != Clock::kWall) {
+  if (target.clock.kind != computer::ClockKind::kWall) {
     root.fail("clock",
               fmt::format("is \"{}\", but a target with an address needs the clock \"wall\".",
-                          name(target.clock)));
+                          computer::name(target.clock.kind)));
   }
   for (const char* key : {"cpu_factor", "cpu_factor_interval", "cores"}) {
     if (root.has(key))
@@ -59,10 +59,10 @@ std::vector<std::string> read_launcher(const toml::Table& root, const Target& ta
 
 void read_interval(const toml::Table& root, const toml::Range& range, Target& target) {
   const std::vector<double> bounds = root.numbers("cpu_factor_interval", 2, range);
-  if (bounds[0] > target.cpu_factor || bounds[1] < target.cpu_factor)
+  if (bounds[0] > target.clock.factor || bounds[1] < target.clock.factor)
     root.fail("cpu_factor_interval",
               fmt::format("is [{}, {}], which does not contain cpu_factor = {}.", bounds[0],
-                          bounds[1], target.cpu_factor));
+                          bounds[1], target.clock.factor));
   target.cpu_factor_interval = {bounds[0], bounds[1]};
 }
 
@@ -96,7 +96,7 @@ std::array<std::uint64_t, kWorkClasses> read_costs(const toml::Table& root) {
 
 /// What the clock "counted" needs, and no other clock has.
 std::optional<os::Emulator> read_emulator(const toml::Table& root, const Target& target) {
-  if (target.clock != Clock::kCounted) {
+  if (target.clock.kind != computer::ClockKind::kCounted) {
     for (const char* key : {"emulator", "cpu_model", "sysroot", "cost_ns"})
       if (root.has(key)) root.fail(key, "needs clock = \"counted\".");
     return std::nullopt;
@@ -129,10 +129,12 @@ Target load_target(const std::filesystem::path& file) {
   target.description = root.text_or("description", "");
   target.ssh = read_address(root);
   if (root.has("clock")) {
-    target.clock = kClocksOfTargets[root.choice("clock", kTargetClocks)];
+    std::vector<std::string_view> names;
+    for (const computer::ClockKind kind : kClocks) names.push_back(computer::name(kind));
+    target.clock.kind = kClocks[root.choice("clock", names)];
   }
   if (target.ssh) reject_keys_of_virtual_targets(root, target);
-  target.cpu_factor = root.number_or("cpu_factor", kFactor, 1.0);
+  target.clock.factor = root.number_or("cpu_factor", kFactor, 1.0);
   if (root.has("cpu_factor_interval")) read_interval(root, kFactor, target);
   target.cores = static_cast<int>(root.integer_or("cores", 1, kMostCores, 0));
   target.launcher = read_launcher(root, target);

@@ -44,7 +44,7 @@ void keep_first_uavs(Scenario& scenario, const std::string& count) {
         scenario.uavs, [&](const UavSetup& uav) { return uav.placement.name == metric.uav; });
   });
   for (Condition& condition : scenario.conditions) {
-    if (condition.computers.empty()) continue;
+    if (condition.seats.empty()) continue;
     condition.seats.resize(kept);
     std::vector<Computer> computers;
     for (std::size_t i = 0; i < condition.computers.size(); ++i) {

@@ -2,7 +2,7 @@
 
 #include "files/named_file.h"
 #include "files/scenario_keys.h"
-#include "tables/read_clock_rate.h"
+#include "tables/read_clock.h"
 
 #include <algorithm>
 #include <array>
@@ -25,22 +25,18 @@ Computer read_computer(const toml::Table& table, Scenario& scenario) {
     Target target = load_target(named_file(table, "file", ShippedKind::kTarget));
     scenario.files.push_back(target.file);
     computer.clock = target.clock;
-    computer.cpu_factor = target.cpu_factor;
     computer.cores = target.cores;
     // Those of a modelled computer are no cores of this machine.
-    if (target.clock != Clock::kWall) target.cores = 0;
+    if (target.clock.kind != computer::ClockKind::kWall) target.cores = 0;
     computer.target = std::move(target);
   } else {
-    constexpr std::array<std::string_view, 3> kOwnClocks = {"wall", "cpu", "scripted"};
+    using enum computer::ClockKind;
     if (!table.has("clock"))
       table.fail("clock", "is missing. Add it, or a 'file' that specifies the clock.");
-    computer.clock = static_cast<Clock>(table.choice("clock", kOwnClocks));
-    const ClockRate rate = read_clock_rate(table, computer.clock);
-    computer.cpu_factor = rate.cpu_factor;
-    computer.computing = rate.computing;
+    computer.clock = read_clock(table, {kWall, kCpu, kScripted});
   }
   computer.by_hand = table.boolean_or("by_hand", false);
-  if (computer.clock == Clock::kWall) {
+  if (computer.clock.kind == computer::ClockKind::kWall) {
     if (table.has("cores"))
       table.fail("cores",
                  "is that of a modelled computer, but the clock is \"wall\". Remove this key; to "
@@ -85,7 +81,7 @@ std::optional<Seat> read_seat(const toml::Table& table, const Scenario& scenario
     seat.pinned_core =
         static_cast<int>(table.integer_or("pinned_core", 0, kMostSharedCores - 1, 0));
     const Computer& computer = scenario.computers[seat.computer];
-    if (computer.clock == Clock::kWall)
+    if (computer.clock.kind == computer::ClockKind::kWall)
       table.fail(
           "pinned_core",
           fmt::format("needs a modelled computer, but the clock of target \"{}\" is \"wall\". "
@@ -125,12 +121,11 @@ void read_seats(const toml::Table& table, Condition& condition, const Scenario& 
   seat(scenario, condition, table.boolean_or("shared", true));
   for (const Computer& computer : condition.computers) {
     if (condition.policy != Policy::kFreeRunning) continue;
-    const bool is_scaled_wall = computer.clock == Clock::kWall && computer.cpu_factor != 1.0;
-    if (is_scaled_wall || computer.clock == Clock::kCounted || computer.clock == Clock::kScripted)
+    if (computer.clock.needs_barrier())
       table.fail("policy",
                  fmt::format("is \"free_running\", which uses the wall clock, but the clock of "
                              "target \"{}\" is \"{}\". Add a 'clock' for this condition.",
-                             computer.name, name(computer.clock)));
+                             computer.name, computer::name(computer.clock.kind)));
   }
 }
 

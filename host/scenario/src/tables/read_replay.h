@@ -8,7 +8,7 @@
 
 namespace tether::scenario {
 
-/// The keys of a condition with Clock::kReplayed.
+/// The keys of a condition with computer::ClockKind::kReplayed.
 inline constexpr std::string_view kReplayKeys[] = {"timing", "mode", "counted", "unknown_stages"};
 
 /// Reads these keys of a condition, whose clock and policy are known. With another clock, none of

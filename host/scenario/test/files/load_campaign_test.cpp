@@ -89,7 +89,7 @@ TEST_F(LoadCampaign, SweepsAllCombinationsOrPairs) {
       names_of(grid),
       ElementsAre("full-cpu_factor-1-time_limit_s-5", "full-cpu_factor-1-time_limit_s-6",
                   "full-cpu_factor-2.5-time_limit_s-5", "full-cpu_factor-2.5-time_limit_s-6"));
-  EXPECT_EQ(grid.scenarios[2].scenario.find_condition("host")->cpu_factor, 2.5);
+  EXPECT_EQ(grid.scenarios[2].scenario.find_condition("host")->computers[0].clock.factor, 2.5);
   EXPECT_EQ(grid.scenarios[2].swept_from, "full");
   EXPECT_THAT(
       names_of(load_with("[[scenario]]", "[sweep]\npaired = true\n" + keys + "[[scenario]]")),

@@ -82,7 +82,8 @@ class ResolveEnergy : public LoadEnergy {
 
 TEST_F(ResolveEnergy, TakesThePowerOfTheTarget) {
   EXPECT_DOUBLE_EQ(resolve(kGood).computer.idle_W, 2.3);
-  scenario_.conditions[0].target.emplace().power = {{.idle_W = 5.0, .busy_core_W = 2.0}};
+  scenario_.conditions[0].computers[0].target.emplace().power = {
+      {.idle_W = 5.0, .busy_core_W = 2.0}};
   EXPECT_DOUBLE_EQ(resolve(kGood).computer.idle_W, 5.0);
 }
 

@@ -46,7 +46,7 @@ TEST_F(LoadScenario, ReadsWhatIsReplayed) {
   };
   const auto source = [&](const std::string& keys) {
     const Scenario scenario = load(change(keys));
-    EXPECT_EQ(scenario.conditions[0].clock, Clock::kReplayed);
+    EXPECT_EQ(scenario.conditions[0].computers[0].clock.kind, computer::ClockKind::kReplayed);
     EXPECT_EQ(std::ranges::count(scenario.files, scratch_.path("a.timing")), 1);
     return *scenario.conditions[0].replay;
   };
@@ -186,27 +186,28 @@ TEST_F(LoadScenario, ReadsConditions) {
   const Scenario s = load(kFullScenario);
   ASSERT_EQ(s.conditions.size(), 4u);
   EXPECT_EQ(s.conditions[0].policy, Policy::kConservativeBarrier);
-  EXPECT_EQ(s.conditions[0].clock, Clock::kCpu);
-  EXPECT_EQ(s.conditions[0].cpu_factor, 1.5);
-  EXPECT_EQ(s.conditions[0].computing, Duration(0));
+  EXPECT_EQ(s.conditions[0].computers[0].clock.kind, computer::ClockKind::kCpu);
+  EXPECT_EQ(s.conditions[0].computers[0].clock.factor, 1.5);
+  EXPECT_EQ(s.conditions[0].computers[0].clock.computing, Duration(0));
   EXPECT_EQ(s.conditions[0].real_time_factor, 0.0);
   EXPECT_EQ(s.conditions[0].simulator, "mujoco");
-  EXPECT_FALSE(s.conditions[0].target);
+  EXPECT_FALSE(s.conditions[0].computers[0].target);
   const Condition* no_sync = s.find_condition("target, no sync");
   ASSERT_NE(no_sync, nullptr);
   EXPECT_EQ(no_sync->policy, Policy::kFreeRunning);
-  EXPECT_EQ(no_sync->clock, Clock::kWall);
+  EXPECT_EQ(no_sync->computers[0].clock.kind, computer::ClockKind::kWall);
   EXPECT_EQ(no_sync->real_time_factor, 0.25);
-  EXPECT_EQ(s.conditions[2].clock, Clock::kScripted);
-  EXPECT_EQ(s.conditions[2].computing, Duration(2'500'000));
-  ASSERT_TRUE(s.conditions[3].target);
-  EXPECT_EQ(s.conditions[3].target->name, "slow");
-  EXPECT_EQ(s.conditions[3].clock, Clock::kCpu);
-  EXPECT_EQ(s.conditions[3].cpu_factor, 6.0);
+  EXPECT_EQ(s.conditions[2].computers[0].clock.kind, computer::ClockKind::kScripted);
+  EXPECT_EQ(s.conditions[2].computers[0].clock.computing, Duration(2'500'000));
+  ASSERT_TRUE(s.conditions[3].computers[0].target);
+  EXPECT_EQ(s.conditions[3].computers[0].target->name, "slow");
+  EXPECT_EQ(s.conditions[3].computers[0].clock.kind, computer::ClockKind::kCpu);
+  EXPECT_EQ(s.conditions[3].computers[0].clock.factor, 6.0);
   EXPECT_EQ(s.conditions[3].simulator, "gazebo");
   EXPECT_EQ(s.find_condition("nowhere"), nullptr);
-  EXPECT_EQ(load_with("\"cpu\"\ncpu_factor = 1.5", "\"unstamped\"").conditions[0].clock,
-            Clock::kUnstamped);
+  EXPECT_EQ(
+      load_with("\"cpu\"\ncpu_factor = 1.5", "\"unstamped\"").conditions[0].computers[0].clock.kind,
+      computer::ClockKind::kUnstamped);
 }
 
 TEST_F(LoadScenario, ReadsProfilesAndAppliesAnotherOnTop) {

@@ -42,8 +42,8 @@ TEST_F(LoadTarget, ReadsAVirtualTarget) {
   EXPECT_EQ(target.name, "slow");
   EXPECT_EQ(target.description, "every key");
   EXPECT_FALSE(target.ssh);
-  EXPECT_EQ(target.clock, Clock::kCpu);
-  EXPECT_EQ(target.cpu_factor, 6.5);
+  EXPECT_EQ(target.clock.kind, computer::ClockKind::kCpu);
+  EXPECT_EQ(target.clock.factor, 6.5);
   EXPECT_EQ(target.cores, 2);
   EXPECT_THAT(target.launcher, ElementsAre("qemu-aarch64", "-L", scratch_.path("sysroot")));
   EXPECT_EQ(target.program_folder, scratch_.path("arm64/bin"));
@@ -56,15 +56,15 @@ TEST_F(LoadTarget, ReadsABoardAndLeavesItsPathsUnchanged) {
   ASSERT_TRUE(target.ssh);
   EXPECT_EQ(target.ssh->destination, "user@board");
   EXPECT_EQ(target.ssh->port, 2222);
-  EXPECT_EQ(target.clock, Clock::kWall);
+  EXPECT_EQ(target.clock.kind, computer::ClockKind::kWall);
   EXPECT_THAT(target.launcher, ElementsAre("nice", "-n", "-5", "./wrap"));
   EXPECT_EQ(target.program_folder, "bin");
-  EXPECT_EQ(load(kBoardTarget + "clock = \"wall\"\n").clock, Clock::kWall);
+  EXPECT_EQ(load(kBoardTarget + "clock = \"wall\"\n").clock.kind, computer::ClockKind::kWall);
 }
 
 TEST_F(LoadTarget, ReadsACountedTarget) {
   const Target target = load(kCountedTarget);
-  EXPECT_EQ(target.clock, Clock::kCounted);
+  EXPECT_EQ(target.clock.kind, computer::ClockKind::kCounted);
   ASSERT_TRUE(target.emulator);
   EXPECT_EQ(target.emulator->program, "qemu-aarch64");
   EXPECT_EQ(target.emulator->cpu_model, "cortex-a72");
@@ -105,8 +105,8 @@ TEST_F(LoadTarget, RefusesWorkThatTakesNoTime) {
 
 TEST_F(LoadTarget, IsThisHostByDefault) {
   const Target target = load("name = \"bare\"\n");
-  EXPECT_EQ(target.clock, Clock::kWall);
-  EXPECT_EQ(target.cpu_factor, 1.0);
+  EXPECT_EQ(target.clock.kind, computer::ClockKind::kWall);
+  EXPECT_EQ(target.clock.factor, 1.0);
   EXPECT_EQ(target.cores, 0);
   EXPECT_TRUE(target.launcher.empty() && target.program_folder.empty());
 }

@@ -20,8 +20,9 @@ class Settings : public testing::Test {
 
 TEST_F(Settings, ReplaceValuesByTheirPathFromTheTopAConditionOrAUav) {
   EXPECT_EQ(load({{"time_limit_s", "7"}}).time_limit, std::chrono::seconds(7));
-  EXPECT_EQ(load({{"condition.cpu_factor", "9"}}).find_condition("host")->cpu_factor, 9);
-  EXPECT_EQ(load({{"cpu_factor", "9"}}).find_condition("host")->cpu_factor, 9);
+  EXPECT_EQ(load({{"condition.cpu_factor", "9"}}).find_condition("host")->computers[0].clock.factor,
+            9);
+  EXPECT_EQ(load({{"cpu_factor", "9"}}).find_condition("host")->computers[0].clock.factor, 9);
   EXPECT_EQ(load({{"yaw_spread_deg", "0"}}).uavs.front().yaw_spread_rad, 0.0);
 }
 

@@ -40,7 +40,7 @@ class CountedSource final : public TimeSource {
   CountedSource(const CountedSource&) = delete;
   CountedSource& operator=(const CountedSource&) = delete;
 
-  link::ClockKind kind() const override { return link::ClockKind::kCounted; }
+  computer::Clock clock() const override { return {computer::ClockKind::kCounted}; }
 
   Duration elapsed() const override { return before_ + since_resume(page_->units.load()); }
 

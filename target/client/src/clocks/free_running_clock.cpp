@@ -39,7 +39,7 @@ ExecTime FreeRunningClock::read() const {
 Duration FreeRunningClock::wall_of_target() const {
   const Duration here = wall_->now();
   if (phase_ == Phase::kStalling) return std::max(here, stall_until_);
-  if (phase_ != Phase::kComputing || source_->factor() <= 1.0) return here;
+  if (phase_ != Phase::kComputing || source_->clock().factor <= 1.0) return here;
   return std::max(here, computing_since_ + (source_->elapsed() - accounted_));
 }
 

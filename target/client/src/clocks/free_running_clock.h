@@ -18,7 +18,7 @@ namespace tether::client {
 /// time was used, not only from the stall on.
 class FreeRunningClock final : public InteractionClock {
  public:
-  /// @pre source.factor() ≥ 1, real_time_factor > 0. `source` and `wall` must outlive it.
+  /// @pre the source's factor is ≥ 1, real_time_factor > 0. `source` and `wall` must outlive it.
   FreeRunningClock(const TimeSource& source, WallTimer& wall, ExecTime start,
                    double real_time_factor);
 

@@ -29,8 +29,7 @@ Duration scaled(Duration measured, double factor) {
 class WallSource final : public TimeSource {
  public:
   explicit WallSource(double factor) : factor_(factor) {}
-  link::ClockKind kind() const override { return link::ClockKind::kWall; }
-  double factor() const override { return factor_; }
+  computer::Clock clock() const override { return {computer::ClockKind::kWall, factor_}; }
   Duration elapsed() const override {
     return scaled(read_clock(CLOCK_MONOTONIC) - origin_, factor_);
   }
@@ -44,8 +43,7 @@ class CpuSource final : public TimeSource {
  public:
   explicit CpuSource(double factor) : factor_(factor) { os::adopt_orphans(); }
 
-  link::ClockKind kind() const override { return link::ClockKind::kCpu; }
-  double factor() const override { return factor_; }
+  computer::Clock clock() const override { return {computer::ClockKind::kCpu, factor_}; }
   Duration elapsed() const override;
   Duration elapsed_at_resume() const override;
   Duration elapsed_in_children() const override;
@@ -153,8 +151,7 @@ void CpuSource::release_calling_thread() {
 class ScriptedSource final : public TimeSource {
  public:
   explicit ScriptedSource(Duration step) : step_(step) {}
-  link::ClockKind kind() const override { return link::ClockKind::kScripted; }
-  Duration computing() const override { return step_; }
+  computer::Clock clock() const override { return {computer::ClockKind::kScripted, 1.0, step_}; }
   Duration elapsed() const override { return ++readings_ * step_; }
 
  private:
@@ -164,7 +161,7 @@ class ScriptedSource final : public TimeSource {
 
 class ReplayedSource final : public TimeSource {
  public:
-  link::ClockKind kind() const override { return link::ClockKind::kReplayed; }
+  computer::Clock clock() const override { return {computer::ClockKind::kReplayed}; }
   Duration elapsed() const override { return Duration(charged_ns_.load()); }
   void charge(Duration computing) override { charged_ns_ += computing.count(); }
 

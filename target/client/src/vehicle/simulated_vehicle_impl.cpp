@@ -86,7 +86,7 @@ Result<link::Reply> SimulatedVehicle::interact_alone(Body body) {
 
 // Time that is replayed is charged before the clock is read. Otherwise nothing is done until then.
 ExecTime SimulatedVehicle::begin_call(const Body& body) {
-  if (source_->kind() == link::ClockKind::kReplayed) {
+  if (source_->clock().kind == computer::ClockKind::kReplayed) {
     const std::string call = name_of_call(body, catalogue());
     source_->charge(stages_.take(given_, link::stage_between(previous_call_, call)));
     return clock_->begin();
@@ -185,11 +185,12 @@ Status SimulatedVehicle::change_stage(Change change) {
   const Call call(*this);
   if (const Status good = usable(); !good) return good;  // others were first
   if (free_running_) return change(stages_);
-  if (source_->computing() > Duration::zero()) {
+  if (source_->clock().computing > Duration::zero()) {
     stages_.reach(stages_.reached());
     return change(stages_);
   }
-  if (source_->kind() == link::ClockKind::kReplayed) source_->charge(stages_.take(given_, ""));
+  if (source_->clock().kind == computer::ClockKind::kReplayed)
+    source_->charge(stages_.take(given_, ""));
   const ExecTime at = clock_->begin();
   stages_.reach(at);
   const Status changed = change(stages_);

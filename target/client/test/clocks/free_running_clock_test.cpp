@@ -16,11 +16,11 @@ class FreeRunning : public testing::Test {
  protected:
   /// `cpu` of CPU time, during which as much wall time goes by.
   void compute(Duration cpu) {
-    source_.advance(Duration(std::int64_t(source_.factor()) * cpu.count()));
+    source_.advance(Duration(std::int64_t(source_.clock().factor) * cpu.count()));
     wall_.advance(cpu);
   }
   FakeWallTimer wall_;
-  ManualTimeSource source_{link::ClockKind::kCpu, 4.0};
+  ManualTimeSource source_{computer::ClockKind::kCpu, 4.0};
   FreeRunningClock clock_{source_, wall_, from_ns<ExecTime>(100), 1.0};
 };
 
@@ -105,7 +105,7 @@ TEST_F(FreeRunning, ShowsTheSameTimeBeforeDuringAndAfterAStall) {
 }
 
 TEST_F(FreeRunning, DoesNotStallWithoutAFactor) {
-  ManualTimeSource source(link::ClockKind::kWall);
+  ManualTimeSource source(computer::ClockKind::kWall);
   FreeRunningClock clock(source, wall_, ExecTime{}, 1.0);
   source.advance(5ms);
   wall_.advance(5ms);

@@ -51,7 +51,7 @@ void expect_monotone(const std::vector<link::Message>& heard) {
 }
 
 TEST(Progress, ReportsEtWhileComputing) {
-  ManualTimeSource source(link::ClockKind::kWall);
+  ManualTimeSource source(computer::ClockKind::kWall);
   ScriptedCoordinator coordinator(link::Welcome{});
   const auto vehicle = connect_with(coordinator, source);
   for (int i = 1; i <= 50; ++i) {
@@ -63,7 +63,7 @@ TEST(Progress, ReportsEtWhileComputing) {
 }
 
 TEST(Progress, IsMonotoneBetweenRequests) {
-  ManualTimeSource source(link::ClockKind::kWall);
+  ManualTimeSource source(computer::ClockKind::kWall);
   ScriptedCoordinator coordinator(link::Welcome{}, [](const Request& r) {
     return std::vector<link::Message>{link::Reply{r.sequence, r.issued_at + 7us, {}}};
   });
@@ -84,7 +84,7 @@ TEST(Progress, IsMonotoneBetweenRequests) {
 }
 
 TEST(Progress, IsNotSentWhileAReplyIsPending) {
-  ManualTimeSource source(link::ClockKind::kWall);
+  ManualTimeSource source(computer::ClockKind::kWall);
   ScriptedCoordinator coordinator(link::Welcome{}, [&source](const Request& r) {
     for (int i = 0; i < 20; ++i) {
       source.advance(1ms);
@@ -131,7 +131,7 @@ bool wait_for_two_more(ScriptedCoordinator& coordinator) {
 
 TEST(Heartbeat, IsSentWithEveryClockInFreeRunning) {
   for (const auto kind :
-       {link::ClockKind::kWall, link::ClockKind::kCpu, link::ClockKind::kScripted}) {
+       {computer::ClockKind::kWall, computer::ClockKind::kCpu, computer::ClockKind::kScripted}) {
     ScriptedCoordinator coordinator(free_running());
     ConnectOptions options;
     options.time = std::make_unique<ManualTimeSource>(kind);
@@ -148,12 +148,12 @@ TEST(Heartbeat, IsSentWithEveryClockInFreeRunning) {
 TEST(Heartbeat, IsNotSentUnderTheBarrierNorWhereItIsOff) {
   struct Case {
     bool free;
-    link::ClockKind clock;
+    computer::ClockKind clock;
     Duration progress_period, heartbeat_period;
   };
-  for (const Case& c : {Case{false, link::ClockKind::kWall, 0us, 20us},
-                        Case{true, link::ClockKind::kWall, 20us, 0us},
-                        Case{false, link::ClockKind::kScripted, 20us, 20us}}) {
+  for (const Case& c : {Case{false, computer::ClockKind::kWall, 0us, 20us},
+                        Case{true, computer::ClockKind::kWall, 20us, 0us},
+                        Case{false, computer::ClockKind::kScripted, 20us, 20us}}) {
     ManualTimeSource source(c.clock);
     ScriptedCoordinator coordinator(c.free ? free_running() : link::Welcome{});
     ConnectOptions options;

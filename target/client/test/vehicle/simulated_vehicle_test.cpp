@@ -49,7 +49,7 @@ class SimulatedVehicleTest : public testing::Test {
     EXPECT_NE(result.failure().message.find(value), std::string::npos) << result.failure().message;
   }
 
-  ManualTimeSource source_{link::ClockKind::kCpu, 4.0};
+  ManualTimeSource source_{computer::ClockKind::kCpu, 4.0};
   std::unique_ptr<ScriptedCoordinator> coordinator_;
   std::unique_ptr<SimulatedVehicle> vehicle_;
   FakeWallTimer* wall_ = nullptr;
@@ -242,7 +242,7 @@ TEST_F(SimulatedVehicleTest, RefusesRepliesThatBreakTheRules) {
       [](const Request&) { return one(link::Welcome{}); },
   };
   for (const auto& answer : answers) {
-    source_ = ManualTimeSource(link::ClockKind::kCpu, 4.0);
+    source_ = ManualTimeSource(computer::ClockKind::kCpu, 4.0);
     start(answer);
     source_.advance(1ms);
     expect_failure(vehicle_->read_camera("camera", Read::kNext), Failure::Kind::kProtocol);
@@ -276,7 +276,7 @@ TEST_F(SimulatedVehicleTest, DoesNotHoldEtInFreeRunning) {
 
 class IncompleteSource final : public TimeSource {
  public:
-  link::ClockKind kind() const override { return link::ClockKind::kCpu; }
+  computer::Clock clock() const override { return {computer::ClockKind::kCpu}; }
   Duration elapsed() const override { return Duration(0); }
   Status complete() const override { return Failure{Failure::Kind::kRefused, "not measured"}; }
 };

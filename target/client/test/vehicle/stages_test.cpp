@@ -28,7 +28,7 @@ std::unique_ptr<SimulatedVehicle> fly(ScriptedCoordinator& coordinator, link::We
 
 TEST(Stages, AreInTheNextRequest) {
   ScriptedCoordinator coordinator(welcome_with_sensors());
-  ManualTimeSource source(link::ClockKind::kCpu);
+  ManualTimeSource source(computer::ClockKind::kCpu);
   const auto vehicle =
       fly(coordinator, welcome_with_sensors(), std::make_unique<ManualTimeSource>(source));
   source.advance(1ms);
@@ -63,7 +63,7 @@ TEST(Stages, AreNotMeasuredInFreeRunning) {
   welcome.free_running = true;
   ScriptedCoordinator coordinator(welcome);
   const auto vehicle =
-      fly(coordinator, welcome, std::make_unique<ManualTimeSource>(link::ClockKind::kCpu));
+      fly(coordinator, welcome, std::make_unique<ManualTimeSource>(computer::ClockKind::kCpu));
   { const Stage stage(*vehicle, "detect"); }
   ASSERT_TRUE(vehicle->command_velocity({}).ok());
   EXPECT_TRUE(coordinator.requests().at(0).stages.empty());
@@ -72,7 +72,7 @@ TEST(Stages, AreNotMeasuredInFreeRunning) {
 /// Calls, stages, annotations and computing in an order drawn at random. Whatever it is, the parts
 /// add up to what ET grew by (docs/design.md section 2, rule 5), and with a replayed clock ET grows
 /// by what was given for those parts.
-class RandomFlight : public testing::TestWithParam<link::ClockKind> {
+class RandomFlight : public testing::TestWithParam<computer::ClockKind> {
  protected:
   static link::StageTime given(const std::string& stage, std::uint64_t sequence) {
     const RandomKey key{7, random_stream("", stage, ""), sequence};
@@ -89,7 +89,7 @@ class RandomFlight : public testing::TestWithParam<link::ClockKind> {
 };
 
 TEST_P(RandomFlight, PartsAddUpToWhatWasComputed) {
-  const bool is_replayed = GetParam() == link::ClockKind::kReplayed;
+  const bool is_replayed = GetParam() == computer::ClockKind::kReplayed;
   link::Welcome welcome = welcome_with_sensors();
   welcome.start = ExecTime(3s);
   welcome.computing = given_after(0);
@@ -101,7 +101,7 @@ TEST_P(RandomFlight, PartsAddUpToWhatWasComputed) {
       reply.sample = uav::RangeSample{SimTime{}, 1, 1.0};
     return std::vector<link::Message>{reply};
   });
-  ManualTimeSource measured(link::ClockKind::kCpu);
+  ManualTimeSource measured(computer::ClockKind::kCpu);
   std::unique_ptr<TimeSource> source = std::make_unique<ManualTimeSource>(measured);
   if (is_replayed) source = make_replayed_source();
   const auto vehicle = fly(coordinator, welcome, std::move(source));
@@ -146,7 +146,8 @@ TEST_P(RandomFlight, PartsAddUpToWhatWasComputed) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Clocks, RandomFlight,
-                         testing::Values(link::ClockKind::kCpu, link::ClockKind::kReplayed));
+                         testing::Values(computer::ClockKind::kCpu,
+                                         computer::ClockKind::kReplayed));
 
 }  // namespace
 }  // namespace tether::client

@@ -48,7 +48,7 @@ void call_a_lot(Vehicle& vehicle, ManualTimeSource source) {
 TEST(SerialVehicle, CallsOfSeveralThreadsWaitForOneAnother) {
   const link::Welcome welcome = welcome_with_sensors();
   ScriptedCoordinator coordinator(welcome, answer);
-  ManualTimeSource source(link::ClockKind::kCpu);
+  ManualTimeSource source(computer::ClockKind::kCpu);
   SimulatedVehicle vehicle(coordinator.connect(), welcome,
                            std::make_unique<ManualTimeSource>(source),
                            std::make_unique<FakeWallTimer>(), Duration::zero());
@@ -70,7 +70,7 @@ TEST(SerialVehicle, ForkedChildCannotUseIt) {
   const link::Welcome welcome = welcome_with_sensors();
   ScriptedCoordinator coordinator(welcome, answer);
   auto vehicle = std::make_unique<SimulatedVehicle>(
-      coordinator.connect(), welcome, std::make_unique<ManualTimeSource>(link::ClockKind::kCpu),
+      coordinator.connect(), welcome, std::make_unique<ManualTimeSource>(computer::ClockKind::kCpu),
       std::make_unique<FakeWallTimer>(), 1ms);
   EXPECT_TRUE(vehicle->command_velocity({}).ok());
   const pid_t child = ::fork();

@@ -2,9 +2,8 @@
 
 namespace tether::client_testing {
 
-ManualTimeSource::ManualTimeSource(link::ClockKind kind, double factor)
-    : kind_(kind),
-      factor_(factor),
+ManualTimeSource::ManualTimeSource(computer::ClockKind kind, double factor)
+    : clock_{kind, factor},
       elapsed_ns_(std::make_shared<std::atomic<std::int64_t>>(0)),
       children_ns_(std::make_shared<std::atomic<std::int64_t>>(0)) {}
 

@@ -24,7 +24,7 @@ Header make_header() {
   header.condition = "host";
   header.policy = kConservativeBarrier;
   header.step = Duration(1'000'000);
-  header.suts = {{"uav", "sample", "scripted", 1.0, {}}};
+  header.suts = {{"uav", "sample", {computer::ClockKind::kScripted}, {}}};
   header.sensors = {{"uav", "range", "range", false, {}, {}}};
   header.anchors = {{"box", "box", {0.4, 0.4, 0.4}, {3, 0, 1}, {1, 0, 0, 0}}};
   return header;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <tether/base/time.h>
+#include <tether/computer/clock.h>
 #include <tether/uav/catalogue.h>
 #include <tether/uav/samples.h>
 
@@ -24,22 +25,6 @@ inline constexpr std::uint32_t kProtocolVersion = 2;
 /// The name of the client library's own thread, whose time is not the SUT's.
 inline constexpr const char* kClientThread = "tether-client";
 
-/// How the SUT's execution time is measured (DESIGN section 2).
-enum class ClockKind : std::uint8_t {
-  kWall = 0,
-  kCpu = 1,
-  kScripted = 2,
-  kUnstamped = 3,
-  kCounted = 4,
-  kReplayed = 5,
-};
-std::string_view name(ClockKind kind);
-/// Whether runs with this clock repeat to the byte: no clock of a machine has a part in it.
-constexpr bool repeats(ClockKind kind) {
-  return kind == ClockKind::kScripted || kind == ClockKind::kCounted ||
-         kind == ClockKind::kReplayed;
-}
-
 /// One of the things besides the program's own code that decide what it computes.
 struct BuildPart {
   std::string name;   ///< "argument 4", "file detect.py", "library libopencv_core.so.406"
@@ -50,17 +35,13 @@ struct BuildPart {
 /// SUT → coordinator, first.
 struct Hello {
   std::uint32_t protocol_version = kProtocolVersion;
-  std::string sut;  ///< the program's name and version
-  std::string uav;  ///< which UAV it flies; empty: the only one
-  ClockKind clock = ClockKind::kWall;
-  /// Of a virtual target: seconds of ET per second that the clock measures. 1 on the target itself.
-  double cpu_factor = 1.0;
+  std::string sut;          ///< the program's name and version
+  std::string uav;          ///< which UAV it flies; empty: the only one
+  computer::Clock clock{};  ///< of a scripted one that the sender does not know, `computing` is 0
   std::string token;
   /// Several threads or processes call, and each waits for its own reply only. Under the barrier
   /// all of them are stopped while a reply that is due has not arrived (Progress::stopped).
   bool concurrent = false;
-  /// Of a scripted clock: the ET of each phase of computing. 0: another clock, or not known.
-  Duration computing{0};
   std::string build_id{};     ///< of the program, in hexadecimal digits; empty: it has none
   std::uint32_t process = 0;  ///< as the SUT's machine numbers it; 0: not known
   /// The program's arguments, the files that they name, and its libraries. Empty: not known.

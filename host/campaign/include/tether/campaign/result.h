@@ -12,6 +12,7 @@
 #include <tether/base/time.h>
 #include <tether/base/warning.h>
 #include <tether/campaign/metrics.h>
+#include <tether/computer/clock.h>
 #include <tether/energy/meter.h>
 #include <tether/judge/judge.h>
 #include <tether/record/reader.h>
@@ -49,8 +50,7 @@ inline constexpr std::string_view kEndBatteryEmpty = "battery_empty";
 struct SutResult {
   std::string uav;
   std::string sut;  ///< name and version
-  std::string clock;
-  double cpu_factor = 1.0;
+  computer::Clock clock{};
   std::optional<ExecTime> et_at_end{};  ///< none if ET was not synchronised with ST
   bool finished = false;
   bool reached_goal = false;
@@ -213,9 +213,7 @@ struct TrialResult {
   std::string condition;
   std::uint64_t seed = 0;
   std::string policy;
-  std::string clock;
-  double cpu_factor = 1.0;
-  Duration computing{0};  ///< of clock "scripted": charged for each phase of computing
+  computer::Clock clock{};
   std::optional<ReplayReport> replay{};  ///< of clock "replayed"
   double real_time_factor = 0.0;
   std::optional<StepReport> step{};  ///< none: the result is of an earlier version

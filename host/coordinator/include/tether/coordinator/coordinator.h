@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <tether/base/time.h>
+#include <tether/computer/clock.h>
 #include <tether/link/server.h>
 #include <tether/radio/settings.h>
 #include <tether/record/messages.h>
@@ -23,22 +24,13 @@
 /// the record.
 namespace tether::coordinator {
 
-struct ClockSetting {
-  link::ClockKind kind = link::ClockKind::kWall;
-  double cpu_factor = 1.0;  ///< of kCpu and kWall: seconds of ET per second of the clock
-  Duration computing{0};    ///< of kScripted: for each phase of computing
-};
-
-/// In the syntax of TETHER_CLOCK: "cpu*6".
-std::string to_text(const ClockSetting& setting);
-
 /// One UAV of the world and its SUT.
 struct UavOptions {
   std::vector<uav::SensorTiming> timings;  ///< one per sensor of the UAV, in the world's order
   Duration command_latency{0};             ///< from a command's timestamp to its effect; ≥ 0
   /// The clock by which the condition measures this SUT's time. A SUT with another clock is
   /// rejected. None: any clock.
-  std::optional<ClockSetting> clock{};
+  std::optional<computer::Clock> clock{};
   /// Cores of the SUT's machine; they limit how fast its CPU time can grow. 0: not known.
   int cores = 0;
   /// With the clock "replayed": gives the SUT its time, from where `replayed_from` says.

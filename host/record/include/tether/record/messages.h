@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <tether/base/time.h>
+#include <tether/computer/clock.h>
 
 /// The contents of a run's record (DESIGN section 5): plain data, one struct per kind of message.
 /// All times in a record are integer nanoseconds; a message's log time is the ST at which it was
@@ -279,14 +280,6 @@ struct SensorInfo {
   Duration delay_max{Duration::max()};
   std::optional<CameraInfo> camera{};  ///< none in records of Tether 0.1.0
 };
-/// How the time of a SUT is measured.
-struct ClockInfo {
-  std::string clock;        ///< "wall", "cpu", "scripted", "unstamped", …
-  double cpu_factor = 1.0;  ///< seconds of ET per second of what the clock measures
-  Duration computing{0};    ///< of "scripted": ET of each phase of computing
-
-  friend bool operator==(const ClockInfo&, const ClockInfo&) = default;
-};
 /// Where the time of a SUT with the clock "replayed" comes from.
 struct ReplayInfo {
   std::string timing;       ///< name of the timing file
@@ -331,9 +324,8 @@ struct BuildPart {
 };
 struct SutInfo {
   std::string uav;
-  std::string sut;              ///< name and version that the SUT reported
-  std::string clock;            ///< "wall", "cpu", "scripted", "unstamped", …
-  double cpu_factor = 1.0;      ///< seconds of ET per second of what the clock measures
+  std::string sut;  ///< name and version that the SUT reported
+  computer::Clock clock{};
   Duration command_latency{0};  ///< from a command's timestamp to its effect, before rounding
   bool concurrent = false;      ///< several threads with parallel calls
   /// Clock "cpu": number of cores whose CPU time can add up; 0: unknown.
@@ -341,9 +333,8 @@ struct SutInfo {
   /// The most that rotors and gravity together can accelerate the UAV; 0: unknown, as in records of
   /// Tether 0.1.0.
   double max_acceleration_m_s2 = 0.0;
-  Duration computing{0};  ///< clock "scripted": ET of each phase of computing
   /// The clock of the condition; the SUT announced the one above. None in records of Tether 0.1.0.
-  std::optional<ClockInfo> required_clock{};
+  std::optional<computer::Clock> required_clock{};
   std::string build_id{};              ///< of the program; empty: it has none
   std::vector<BuildPart> build{};      ///< empty in records of Tether 0.1.0: not known
   std::optional<ReplayInfo> replay{};  ///< clock "replayed"

@@ -35,9 +35,7 @@ struct BoardPace {
 struct Speed {
   struct Program {
     std::string uav{};
-    std::string clock{};
-    double cpu_factor = 1.0;
-    Duration computing{0};                       ///< of a scripted clock: of each phase
+    computer::Clock clock{};
     std::optional<record::ReplayInfo> replay{};  ///< of a replayed clock
     std::string board{}, computer{};             ///< as in record::SutInfo
     std::optional<int> pinned_core{};

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include <tether/base/time.h>
+#include <tether/computer/clock.h>
 #include <tether/mission/mission.h>
 #include <tether/radio/settings.h>
-#include <tether/scenario/clock.h>
 #include <tether/scenario/energy.h>
 #include <tether/scenario/metric.h>
 #include <tether/scenario/profile.h>
@@ -29,7 +29,7 @@ enum class Policy { kConservativeBarrier, kFreeRunning };
 /// As written in files: "conservative_barrier", "free_running".
 std::string_view name(Policy policy);
 
-/// Where the time of SUTs with Clock::kReplayed comes from.
+/// Where the time of SUTs with computer::ClockKind::kReplayed comes from.
 struct ReplaySource {
   std::filesystem::path timing;  ///< a timing file; absolute
   timing::Mode mode = timing::Mode::kResampled;
@@ -38,13 +38,11 @@ struct ReplaySource {
   /// none.
   std::filesystem::path counted{};
 };
-/// A computer of a fleet: how the time of the SUTs on it is measured (as in Condition).
+/// What one or more SUTs run on, and how their time is measured.
 struct Computer {
-  std::string name;  ///< of [[target]]
-  Clock clock = Clock::kCpu;
-  double cpu_factor = 1.0;
-  Duration computing{0};
-  std::optional<Target> target{};
+  std::string name{};  ///< of [[target]]; empty: none describes it
+  computer::Clock clock{computer::ClockKind::kCpu};
+  std::optional<Target> target{};  ///< none: this host. Its clock is the one above
   int cores = 1;         ///< that several SUTs on it share; of a real one 0, they are not modelled
   bool by_hand = false;  ///< the user starts the SUTs on it
   FileLocation at{};
@@ -62,26 +60,16 @@ struct Condition {
   std::string name;
   std::string description;  ///< one line for a person; may be empty
   Policy policy = Policy::kConservativeBarrier;
-  Clock clock = Clock::kCpu;
-  double cpu_factor = 1.0;        ///< slowdown of the virtual target: seconds of ET per CPU second
   double real_time_factor = 0.0;  ///< limit on ST per WT; 0: none (free running: required, > 0)
-  /// With kScripted: the ET that each phase of computing takes, independent of its real time, > 0.
-  /// Such a run is the same every time. With other clocks 0.
-  Duration computing{0};
   std::optional<ReplaySource> replay{};    ///< with kReplayed
   std::optional<radio::Settings> radio{};  ///< replaces that of the scenario
   /// Applied to every UAV's sensors in this order: the condition's own, then that of a campaign or
   /// the command line.
   std::vector<Profile> profiles{};
-  /// Where the SUT runs; its clock and factor are those above. None: this host.
-  std::optional<Target> target{};
-  /// The scenario's [[target]]s, if the UAVs run on these. The values above are then those of the
-  /// first UAV's, and `for_uav` has those of each. Empty: each UAV has such a computer of its own.
-  std::vector<Computer> computers{};
-  std::vector<Seat> seats{};  ///< by UAV, if there are computers
-  /// Of `for_uav`: name of that UAV's computer, and whether the user starts its SUT.
-  std::string computer{};
-  bool by_hand = false;
+  /// At least one. One without a seat: each UAV has such a computer of its own. Otherwise the
+  /// scenario's [[target]]s. See `computer_of`.
+  std::vector<Computer> computers = std::vector<Computer>(1);
+  std::vector<Seat> seats{};  ///< by UAV, if they run on [[target]]s
   /// "mujoco" or "gazebo"; a program may replace it by the address of an external simulator.
   std::string simulator = "mujoco";
   /// Of a condition that was slowed down: what of the scenario it is, and the slowdown that the
@@ -97,7 +85,7 @@ struct Sut {
   std::vector<std::string> command;  ///< program and fixed arguments; not empty
   std::vector<std::pair<std::string, std::string>> parameters;  ///< sorted by key
   /// Several of its threads or processes communicate with the UAV, or compute while another waits:
-  /// it runs under tether-exec. Needs Clock::kWall.
+  /// it runs under tether-exec. Needs computer::ClockKind::kWall.
   bool concurrent = false;
   /// What it flies, and by what the flight is judged; its file is the parameter "mission".
   std::optional<mission::Mission> mission{};
@@ -190,8 +178,8 @@ sim::WorldRequest world_request(const Scenario& scenario, std::uint64_t seed);
 /// Makes the profile the topmost layer of the scenario's sensors, under each condition.
 void lay_profile(Scenario& scenario, const Profile& profile);
 
-/// The condition as that UAV's SUT has it: with the clock and the target of its own computer only.
-Condition for_uav(const Condition& condition, std::size_t uav);
+/// The computer on which that UAV's SUT runs.
+const Computer& computer_of(const Condition& condition, std::size_t uav);
 
 /// Whether several SUTs share the cores of that computer.
 bool is_shared(const Condition& condition, std::size_t computer);
@@ -219,7 +207,7 @@ std::string why_not_on(const Condition& condition, const Target& target);
 /// Makes the condition's SUTs run on the target, whose clock replaces that of the condition. If
 /// there are several computers, each becomes such a target, and SUTs that share one still do.
 /// @throws Error(kUsage), about the condition, with the reason of `why_not_on`.
-void place_on(Condition& condition, Target target);
+void place_on(Condition& condition, const Target& target);
 
 /// Changes what stages take that were not recorded: "refused", "counted" or "zero".
 /// @throws Error(kUsage), about --unknown-stages, if the condition does not replay time, or cannot
@@ -233,7 +221,7 @@ void set_unknown_stages(Condition& condition, std::string_view name);
 void slow_down(Condition& condition, double slowdown);
 
 /// @throws Error(kBadFile), about the UAV, if its SUT is concurrent and the condition's clock is
-/// not Clock::kWall.
+/// not computer::ClockKind::kWall.
 void require_clock(const Scenario& scenario, const Condition& condition);
 
 /// The names of the profiles in use, each once, in the order of their layers: the UAVs', then the

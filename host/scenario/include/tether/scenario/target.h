@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include <tether/computer/clock.h>
 #include <tether/energy/meter.h>
 #include <tether/os/counted_program.h>
-#include <tether/scenario/clock.h>
 
 /// Where the SUT runs: this host, a virtual target on it, or a board (profiles/targets/*.toml).
 namespace tether::scenario {
@@ -25,9 +25,7 @@ struct Target {
   std::string name;               ///< letters, digits, '_', '-', '.', '@'
   std::string description;        ///< one line; may be empty
   std::optional<SshAddress> ssh;  ///< none: this host
-  Clock clock = Clock::kWall;
-  /// Of a virtual target: seconds of ET per second that the clock measures.
-  double cpu_factor = 1.0;
+  computer::Clock clock{};
   /// The bounds of the factor's interval, as its calibration found it; none: not known.
   std::optional<std::pair<double, double>> cpu_factor_interval{};
   int cores = 0;                      ///< that the SUT may use; 0: all
@@ -36,7 +34,8 @@ struct Target {
   /// in the PATH there; on this host, beside `tether` first.
   std::string program_folder;
   std::optional<energy::Computer> power{};  ///< none: not known
-  std::optional<os::Emulator> emulator{};  ///< with Clock::kCounted only; `launcher` then starts it
+  std::optional<os::Emulator>
+      emulator{};  ///< with computer::ClockKind::kCounted only; `launcher` then starts it
 };
 
 /// "ssh://[user@]host[:port]". @throws Error(kUsage) about the text.

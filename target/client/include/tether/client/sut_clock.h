@@ -5,7 +5,7 @@
 
 #include <tether/base/result.h>
 #include <tether/base/time.h>
-#include <tether/link/messages.h>
+#include <tether/computer/clock.h>
 
 namespace tether::client {
 
@@ -14,12 +14,9 @@ namespace tether::client {
 class TimeSource {
  public:
   virtual ~TimeSource() = default;
-  virtual link::ClockKind kind() const = 0;
-  /// Seconds of ET per measured second; 1 except for a virtual target.
-  virtual double factor() const { return 1.0; }
-  /// Of a scripted source: by how much each reading advances it; else 0.
-  virtual Duration computing() const { return Duration(0); }
-  /// Measured time since an arbitrary origin, scaled by `factor()`.
+  virtual computer::Clock clock() const = 0;
+  /// Measured time since an arbitrary origin, scaled by the clock's factor. Each reading of a
+  /// scripted source advances it by Clock::computing.
   virtual Duration elapsed() const = 0;
   /// The same for a SUT that is about to go on: what reading takes is before the measured instant,
   /// not after it, so that it is not charged.
@@ -64,8 +61,7 @@ std::unique_ptr<TimeSource> make_scripted_source(Duration step);
 /// however long the program really computes. Between stages and calls, time stands still.
 std::unique_ptr<TimeSource> make_replayed_source();
 
-/// The source that TETHER_CLOCK names: "wall", "wall*FACTOR", "cpu", "cpu*FACTOR" (FACTOR within
-/// 1e-6..1e6), "counted", "replayed", "scripted*MILLISECONDS". Fails with kInvalid and the allowed
+/// The source that TETHER_CLOCK names (computer::parse_clock). Fails with kInvalid and the allowed
 /// values. For "counted", TETHER_COUNTS names the page of counts; fails with kRefused if several
 /// threads or processes of the program compute.
 Result<std::unique_ptr<TimeSource>> parse_time_source(const std::string& text);

@@ -13,10 +13,10 @@ namespace tether::client_testing {
 class ManualTimeSource final : public client::TimeSource {
  public:
   /// A kind other than scripted lets a vehicle report progress.
-  explicit ManualTimeSource(link::ClockKind kind = link::ClockKind::kScripted, double factor = 1.0);
+  explicit ManualTimeSource(computer::ClockKind kind = computer::ClockKind::kScripted,
+                            double factor = 1.0);
 
-  link::ClockKind kind() const override { return kind_; }
-  double factor() const override { return factor_; }
+  computer::Clock clock() const override { return clock_; }
   Duration elapsed() const override { return Duration(elapsed_ns_->load()); }
 
   Duration elapsed_in_children() const override { return Duration(children_ns_->load()); }
@@ -30,8 +30,7 @@ class ManualTimeSource final : public client::TimeSource {
   }
 
  private:
-  link::ClockKind kind_;
-  double factor_;
+  computer::Clock clock_;
   std::shared_ptr<std::atomic<std::int64_t>> elapsed_ns_, children_ns_;  // shared by the copies
 };
 

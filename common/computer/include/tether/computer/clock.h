@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include <tether/base/result.h>
+#include <tether/base/time.h>
+
+/// What a SUT runs on, and how its execution time is known (DESIGN section 2, "How a SUT's time is
+/// measured"). Everything that asks what a clock can do asks here: a new clock is an enumerator, a
+/// row of the table in clock.cpp, and the source that reads it (target/client).
+namespace tether::computer {
+
+/// The values are those of the link's messages.
+enum class ClockKind : std::uint8_t {
+  kWall = 0,       ///< the machine's monotonic clock
+  kCpu = 1,        ///< CPU time of the program and of its descendants
+  kScripted = 2,   ///< each phase of computing takes the same time
+  kUnstamped = 3,  ///< timed by the coordinator
+  kCounted = 4,    ///< counted work × its costs
+  kReplayed = 5,   ///< recorded earlier, by stage
+};
+inline constexpr std::size_t kClockKinds = 6;
+
+/// As users write it: "wall", "cpu", "scripted", "unstamped", "counted", "replayed"; of another
+/// value "unknown".
+std::string_view name(ClockKind kind);
+/// The inverse; kClockKinds as a value, which has no name, for other texts.
+ClockKind clock_kind(std::string_view name);
+
+/// A clock with its rate.
+struct Clock {
+  ClockKind kind = ClockKind::kWall;
+  /// Of kWall and kCpu: seconds of ET per second that the clock measures; > 0.
+  double factor = 1.0;
+  Duration computing{0};  ///< of kScripted: ET of each phase of computing
+
+  /// In the syntax of TETHER_CLOCK: "cpu*6", "scripted*2.5" (milliseconds), "counted".
+  std::string text() const;
+  /// Runs repeat to the byte: no clock of a machine has a part in it.
+  bool repeats() const;
+  /// Works for a program of which several threads or processes call in parallel.
+  bool allows_parallel() const;
+  /// Goes on while the program waits for something that is no interaction.
+  bool counts_waiting() const;
+  /// Cannot be used in free running, where ST follows the real wall clock.
+  bool needs_barrier() const;
+  /// The clock of a machine that is several times slower or faster: a factor that is not 1.
+  bool is_scaled() const { return factor != 1.0; }
+
+  friend bool operator==(const Clock&, const Clock&) = default;
+};
+
+/// The least and the largest factor, and ET of a scripted phase of computing in milliseconds.
+inline constexpr double kLeastRate = 1e-6, kLargestRate = 1e6;
+
+/// The inverse of Clock::text(); a factor of 1 may be left out. Fails with kInvalid and what is
+/// allowed.
+Result<Clock> parse_clock(const std::string& text);
+
+}  // namespace tether::computer
