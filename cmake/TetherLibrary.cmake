@@ -10,6 +10,7 @@ set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 option(TETHER_WARNINGS_AS_ERRORS "Treat every compiler warning as an error" ON)
 set(TETHER_SANITIZE "" CACHE STRING "Sanitizers for -fsanitize=, e.g. address,undefined")
 set(TETHER_OPTIMISE_BUSY "" CACHE STRING "How libraries that are BUSY are optimised where others are not, e.g. -O1")
+set(TETHER_OPTIMISE_IDLE "" CACHE STRING "How the host's libraries that are not BUSY are optimised, e.g. -Og")
 
 add_library(tether_compile_options INTERFACE)
 target_compile_options(tether_compile_options INTERFACE
@@ -60,20 +61,43 @@ endfunction()
 
 # What nearly every library includes is compiled once. Not with a cache of compiled files (ccache), which finds less
 # that way; nor in `dev`, which finds what a file forgot to include.
-if(CMAKE_UNITY_BUILD AND BUILD_TESTING AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+function(_tether_add_library_headers target)
   file(CONFIGURE OUTPUT "${PROJECT_BINARY_DIR}/library_headers.cpp" CONTENT "\n")
-  add_library(tether_library_headers STATIC EXCLUDE_FROM_ALL "${PROJECT_BINARY_DIR}/library_headers.cpp")
-  target_link_libraries(tether_library_headers PRIVATE tether_compile_options)
-  target_precompile_headers(tether_library_headers PRIVATE
+  add_library(${target} STATIC EXCLUDE_FROM_ALL "${PROJECT_BINARY_DIR}/library_headers.cpp")
+  target_link_libraries(${target} PRIVATE tether_compile_options)
+  target_compile_options(${target} PRIVATE ${ARGN})
+  target_precompile_headers(${target} PRIVATE
     <algorithm> <array> <atomic> <chrono> <cmath> <condition_variable> <filesystem> <fstream> <functional> <map> <memory>
     <mutex> <optional> <ranges> <set> <span> <sstream> <stop_token> <string> <thread> <variant> <vector>)
+endfunction()
+if(CMAKE_UNITY_BUILD AND BUILD_TESTING AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  _tether_add_library_headers(tether_library_headers)
+  if(TETHER_OPTIMISE_IDLE)
+    _tether_add_library_headers(tether_idle_library_headers ${TETHER_OPTIMISE_IDLE} -Wno-maybe-uninitialized)
+  endif()
 endif()
+
+# tether_optimise(<target> [BUSY]): what is compiled for the host, and does not compute for long, need not be fast in a
+# test. What runs on the target is as shipped: a test of counted work counts it.
+function(tether_optimise target)
+  if("BUSY" IN_LIST ARGN AND TETHER_OPTIMISE_BUSY)
+    target_compile_options(${target} PRIVATE ${TETHER_OPTIMISE_BUSY})
+  elseif(TETHER_OPTIMISE_IDLE AND NOT "BUSY" IN_LIST ARGN AND CMAKE_CURRENT_SOURCE_DIR MATCHES "/(host|apps/tether)(/|$)")
+    # Optimised that little, the standard library's own code sets this warning off.
+    target_compile_options(${target} PRIVATE ${TETHER_OPTIMISE_IDLE} -Wno-maybe-uninitialized)
+    if(TARGET tether_idle_library_headers)
+      target_precompile_headers(${target} REUSE_FROM tether_idle_library_headers)
+    endif()
+  elseif(TARGET tether_library_headers)
+    target_precompile_headers(${target} REUSE_FROM tether_library_headers)
+  endif()
+endfunction()
 
 # What must be there before a source can be read (scripts/tidy).
 add_custom_target(tether_generated)
 
 # What each kind of test run has to build, so that it compiles nothing that it does not run.
-foreach(kind IN ITEMS unit input_unit threaded_unit checked_system threaded_system)
+foreach(kind IN ITEMS unit input_unit threaded_unit threaded_full_unit checked_system threaded_system)
   add_custom_target(tether_${kind}_tests)
 endforeach()
 
@@ -153,7 +177,7 @@ endfunction()
 #   TESTING_SOURCES fakes that other folders' tests use, as tether::<name>_testing, with headers in
 #                   testing/include
 #   LABELS, COST    of the tests: extra labels input and threaded; see tether_add_test
-#   BUSY            its tests compute for long: optimised in the preset asan, where compiling takes most of the time
+#   BUSY            its tests compute for long: see tether_optimise
 function(tether_add_library name)
   cmake_parse_arguments(ARG "BUSY" "COST" "SOURCES;PUBLIC;PRIVATE;TESTS;TEST_LIBS;TESTING_SOURCES;LABELS" ${ARGN})
   set(target tether_${name})
@@ -161,10 +185,10 @@ function(tether_add_library name)
     add_library(${target} STATIC ${ARG_SOURCES})
     target_include_directories(${target} PUBLIC include PRIVATE src)
     target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE} tether_compile_options)
-    if(ARG_BUSY AND TETHER_OPTIMISE_BUSY)
-      target_compile_options(${target} PRIVATE ${TETHER_OPTIMISE_BUSY})
-    elseif(TARGET tether_library_headers)
-      target_precompile_headers(${target} REUSE_FROM tether_library_headers)
+    if(ARG_BUSY)
+      tether_optimise(${target} BUSY)
+    else()
+      tether_optimise(${target})
     endif()
   else()
     add_library(${target} INTERFACE)
@@ -218,6 +242,7 @@ endfunction()
 #   system    whole programs
 #   input     unit tests of what reads what others wrote or sent: under asan and ubsan at each change
 #   threaded  unit tests of what starts threads: under tsan as well; a system test with --full only
+#   threaded_full   the same with --full only: what is built on the libraries with the label threaded
 #   checked   a system test that runs under asan and ubsan as well, with --full
 #   board, arm64, gazebo   needs this part; not in `scripts/test --quick`
 #   full      in `scripts/test --full` only, but for the cases of EVERY_CHANGE
