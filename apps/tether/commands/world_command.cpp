@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include <tether/base/counted.h>
 #include <tether/os/interrupt.h>
 #include <tether/os/program.h>
 #include <tether/sim_sdf/load_world.h>
@@ -32,9 +33,10 @@ int check_world(const WorldCheckOptions& options, const std::stop_token&) {
       fmt::format("step {} ms{}", 1e3 * to_seconds(world.step), sim::set_at(world));
   find_back_end("mujoco").prepare(std::move(world), collect);
   print(fmt::format(
-      "{}: can be used ({} models, {} lights, {}); {}\n{}", file, models, lights, step,
+      "{}: can be used ({}, {}, {}); {}\n{}", file, counted(models, "model"),
+      counted(lights, "light"), step,
       warnings.empty() ? "everything is simulated as written"
-                       : fmt::format("{} things are not simulated as written", warnings.size()),
+                       : fmt::format("not simulated as written: {}", counted(warnings.size(), "part")),
       grouped(warnings, std::numeric_limits<std::size_t>::max())));
   return 0;
 }

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <tether/base/error.h>
+#include <tether/scenario/decidable.h>
 #include <tether/scenario/slowness.h>
 
 namespace tether::runner {
@@ -33,6 +34,7 @@ std::vector<std::string> size_arguments(const TrialSpec& spec,
                                         const scenario::ShippedFiles& shipped) try {
   if (!spec.scenario.settings.empty() || spec.scenario.has_laid_profile || spec.waits_for_sut)
     return {};
+  scenario::require_decidable(spec.scenario);
   const bool is_slowed = !spec.condition.slowed_from.empty();
   const scenario::Condition* own =
       spec.scenario.find_condition(is_slowed ? spec.condition.slowed_from : spec.condition.name);

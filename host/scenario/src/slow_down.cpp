@@ -44,7 +44,9 @@ void slow_down(Condition& condition, double slowdown) {
   for (Computer& computer : condition.computers) stretch(computer, slowdown);
   condition.slowed_from = condition.name;
   condition.slowdown = slowdown;
-  condition.name = fmt::format("{}, {} x slower", condition.slowed_from, slowdown);
+  condition.name = slowdown < 1.0
+                       ? fmt::format("{}, {:.4g} × faster", condition.slowed_from, 1.0 / slowdown)
+                       : fmt::format("{}, {} × slower", condition.slowed_from, slowdown);
 }
 
 }  // namespace tether::scenario

@@ -15,7 +15,7 @@ TEST(SlowDown, MultipliesTheFactorOfAClockAndNamesTheCondition) {
     condition.computers[0].clock.factor = 6.0;
     slow_down(condition, 2.5);
     EXPECT_DOUBLE_EQ(condition.computers[0].clock.factor, 15.0);
-    EXPECT_EQ(condition.name, "target, 2.5 x slower");
+    EXPECT_EQ(condition.name, "target, 2.5 × slower");
     EXPECT_EQ(condition.slowed_from, "target");
     EXPECT_EQ(condition.slowdown, 2.5);
   }

@@ -48,8 +48,8 @@ std::string threshold_advice(const ConditionVerdict& lead) {
         "(`tether-sut calibrate`), and name it with `tether size SCENARIO --target`.",
         what);
   return fmt::format(
-      "`tether size` finds {}, for a scenario's own conditions on virtual targets. Add the one "
-      "that was flown here to the scenario.",
+      "`tether size` finds {}, for conditions of a scenario's file on virtual targets that have a "
+      "limit.",
       what);
 }
 
@@ -87,6 +87,8 @@ std::string sentence_of(const Advice& advice, const Verdict& verdict) {
     case Kind::kFlyAgain:
       return lead.planned == 1 ? "You stopped the flight: fly again."
                                : "You stopped the campaign: it continues with `--resume`.";
+    case Kind::kFlyRest:
+      return "The campaign is not complete: `--resume` flies the rest.";
     case Kind::kShowWaits:
       return "Wait by the client library (`sleep_for`, `sleep_until`, a read with a timeout), "
              "which "
@@ -125,7 +127,8 @@ std::string sentence_of(const Advice& advice, const Verdict& verdict) {
       return threshold_advice(lead) + uavs_advice(lead);
     case Kind::kFlyMore:
       if (lead.planned == 1)
-        return "One flight shows little. Fly a campaign of several seeds: `tether campaign`.";
+        return "One flight shows little. Fly a campaign of several seeds: `tether campaign FILE`; "
+               "`tether list` shows examples.";
       if (advice.flights == 0)
         return fmt::format("Fly more: the share is so near to {} that {} do not decide it.",
                            kWanted, counted(lead.flown, "flight"));

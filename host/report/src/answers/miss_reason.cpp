@@ -79,24 +79,22 @@ bool is_faster(const Compared& other, const Compared& missed) {
   return costs && costs->own_s > kSameCost * costs->other_s;
 }
 
-/// Whether its flights say anything of a computer.
-bool is_evidence(const ConditionVerdict& one) {
-  return one.ruling > Ruling::kUnseen && one.ruling < Ruling::kFreeRunning;
-}
-
 bool is_instant(const Compared& one) {
   return one.pace() && one.pace()->speed.is_instant();
 }
 
-/// Whether chance does not explain that `a` reaches the goal more often. If the seeds change
-/// nothing, chance has no part.
-bool reaches_more_often(const ConditionVerdict& a, const ConditionVerdict& b) {
+/// Whether chance does not explain that `a` reaches the goal more often: Fisher's exact test with
+/// Bonferroni's correction for that many comparisons. If the seeds change nothing, chance has no
+/// part.
+bool reaches_more_often(const ConditionVerdict& a, const ConditionVerdict& b,
+                        std::size_t comparisons) {
   const auto is_certain = [](const ConditionVerdict& one) {
     return one.is_one_flight() && one.flown > 1;
   };
   const campaign::Count of_a{a.distinct_reached, a.distinct}, of_b{b.distinct_reached, b.distinct};
   if (of_a.of_them * of_b.all <= of_b.of_them * of_a.all) return false;
-  return (is_certain(a) && is_certain(b)) || campaign::fisher_exact(of_a, of_b) < kSignificant;
+  return (is_certain(a) && is_certain(b)) ||
+         campaign::fisher_exact(of_a, of_b) * static_cast<double>(comparisons) < kSignificant;
 }
 
 bool costs_no_more(const Pace& image, const Pace& other) {
@@ -105,11 +103,12 @@ bool costs_no_more(const Pace& image, const Pace& other) {
          image.median_s <= kSameCost * other.median_s && image.p95_s <= kSameCost * other.p95_s;
 }
 
-bool is_equally_fast_and_reaches(const Compared& other, const Compared& missed) {
+bool is_equally_fast_and_reaches(const Compared& other, const Compared& missed,
+                                 std::size_t comparisons) {
   return other.pace() && missed.pace() && is_sufficient(other.verdict->ruling) &&
          other.pace()->speed == missed.pace()->speed && have_same_sensors(other, missed) &&
          costs_no_more(*missed.pace(), *other.pace()) &&
-         reaches_more_often(*other.verdict, *missed.verdict);
+         reaches_more_often(*other.verdict, *missed.verdict, comparisons);
 }
 
 // What happened in a flight.
@@ -202,7 +201,8 @@ std::string comparison_text(const Compared& other, const Compared& missed) {
                                  : "");
 }
 
-MissReason reason_of(const Compared& missed, const std::vector<Compared>& all) {
+MissReason reason_of(const Compared& missed, const std::vector<Compared>& all,
+                     std::size_t comparisons) {
   std::vector<const Compared*> faster;
   for (const Compared& other : all)
     if (is_evidence(*other.verdict) && is_faster(other, missed)) faster.push_back(&other);
@@ -211,13 +211,13 @@ MissReason reason_of(const Compared& missed, const std::vector<Compared>& all) {
     return costs_of(*missed.pace(), *other->pace())->other_s;
   });
   for (const Compared* other : faster)
-    if (reaches_more_often(*other->verdict, *missed.verdict))
+    if (reaches_more_often(*other->verdict, *missed.verdict, comparisons))
       return {Evidence::kFasterReaches, other->label, comparison_text(*other, missed)};
   if (const std::string cause = in_each(missed, known_cause); !cause.empty())
     return {Evidence::kKnownCause, "", cause};
   if (is_instant(missed)) return {Evidence::kInstant};
   for (const Compared& other : all)
-    if (is_equally_fast_and_reaches(other, missed))
+    if (is_equally_fast_and_reaches(other, missed, comparisons))
       return {Evidence::kEquallyFastReaches, other.label};
   if (const std::string limit = in_each(missed, limit_below_computing); !limit.empty())
     return {Evidence::kMissesOwnPace, "", limit};
@@ -242,13 +242,17 @@ Ruling ruling_on(Evidence evidence) {
 
 }  // namespace
 
-void explain_misses(std::span<const ToExplain> conditions) {
+bool is_evidence(const ConditionVerdict& one) {
+  return one.ruling > Ruling::kUnseen && one.ruling < Ruling::kFreeRunning;
+}
+
+void explain_misses(std::span<const ToExplain> conditions, std::size_t comparisons) {
   std::vector<Compared> all;
   for (const ToExplain& one : conditions)
     if (auto flights = campaign::distinct_flights(one.results->trials); !flights.empty())
       all.push_back({one.verdict, std::move(flights), one.label});
   for (const Compared& one : all)
-    if (one.verdict->is_missed()) one.verdict->miss = reason_of(one, all);
+    if (one.verdict->is_missed()) one.verdict->miss = reason_of(one, all, comparisons);
   // Not earlier: each is compared with the rulings as they were.
   for (const Compared& one : all)
     if (one.verdict->miss) one.verdict->ruling = ruling_on(one.verdict->miss->evidence);

@@ -14,9 +14,14 @@ struct ToExplain {
   std::string label;  ///< of the condition, for the others
 };
 
+/// Whether its flights say anything of a computer.
+bool is_evidence(const ConditionVerdict& one);
+
 /// Finds why each condition with the ruling kGoalMissed misses its goal, and rules by it. Whatever
-/// is not known to be the same counts as different. @pre the conditions are of one scenario, and
-/// differ in what a condition can change only.
-void explain_misses(std::span<const ToExplain> conditions);
+/// is not known to be the same counts as different.
+/// @param comparisons how many pairs of conditions and points of the scenario can be compared, here
+///   and in other calls. @pre the conditions are of one scenario, and differ in what a condition
+///   can change only.
+void explain_misses(std::span<const ToExplain> conditions, std::size_t comparisons);
 
 }  // namespace tether::report

@@ -74,11 +74,12 @@ std::string goals_text(const ConditionVerdict& condition) {
 std::string missed_goals_text(const ConditionVerdict& condition) {
   const std::string missed = missed_text(condition.missed, condition.flown == 1);
   if (condition.planned == 1)
-    return fmt::format("{}, on “{}”", missed.empty() ? "the goal" : missed, condition.condition);
+    return fmt::format("on “{}” the flight does not meet {}", condition.condition,
+                       missed.empty() ? "the goal" : missed);
   const std::size_t count = condition.flown - condition.reached;
   return fmt::format("on “{}” {} {} the goal{}", condition.condition, count_text(count, condition),
                      verb(condition, count, "misses", "miss"),
-                     missed.empty() ? "" : " (missed: " + missed + ")");
+                     missed.empty() ? "" : " (not met: " + missed + ")");
 }
 
 /// One for each MissReason::Evidence.
@@ -201,9 +202,10 @@ std::string evidence_of(const ConditionVerdict& condition) {
       return missed_goals_text(condition) + with_pace + reason_text(*condition.miss);
     case Ruling::kOtherReason:
       return missed_goals_text(condition) + "." + reason_text(*condition.miss);
+    case Ruling::kNotFlown:
+      return fmt::format("of {} planned on “{}”, none has ended.",
+                         counted(condition.planned, "flight"), condition.condition);
     case Ruling::kUndecided:
-      if (condition.flown == 0)
-        return fmt::format("no flight on “{}” has a result.", condition.condition);
       return (condition.reached == condition.flown ? goals_text(condition)
                                                    : missed_goals_text(condition)) +
              with_pace + undecided_text(condition);
@@ -232,10 +234,11 @@ struct Words {
 constexpr std::array kWords = {
     Words{"void", "Void"},
     Words{"no answer (failed)", "No answer"},
+    Words{"no answer (not flown)", "No answer"},
     Words{"no answer (unseen time)", "No answer"},
     Words{"not fast enough", "Not fast enough", "Not fast enough in this flight"},
     Words{"goal missed", "Goal missed"},
-    Words{"goal missed, probably not for speed", "Goal missed; speed is probably not the reason"},
+    Words{"goal missed, probably for another reason", "Goal missed; speed is probably not the reason"},
     Words{"undecided", "Undecided"},
     Words{"fast enough so far", "Fast enough so far", "Fast enough in this flight"},
     Words{"fast enough", "Fast enough"},
@@ -256,7 +259,7 @@ std::string left_out_in_lead(const ConditionVerdict& condition) {
   return condition.left_out.empty()
              ? fmt::format(", but {} of {} failed", condition.failed,
                            counted(condition.flown + condition.failed, "flight"))
-             : ", but not all of the world is simulated";
+             : ", but not everything is simulated as written";
 }
 
 std::string lead_of(const ConditionVerdict& condition) {

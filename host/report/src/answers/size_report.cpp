@@ -16,6 +16,16 @@
 namespace tether::report {
 namespace {
 
+// As fast as this and faster, a computer does not help a task whose goal is missed as often as on a
+// slower one.
+constexpr double kFastEnoughToTell = 0.1;
+
+/// Fewer flights than wanted reach the goal at any slowdown, and the faster ones no more often.
+bool is_probably_not_for_speed(const SizeReport& report) {
+  return report.synchronised.answer.is_below && !speed_matters(report.synchronised) &&
+         report.question.least <= kFastEnoughToTell;
+}
+
 // Two digits, as many as an answer deserves: "3.1", "12", "0.85".
 std::string digits(double value) {
   const std::string text = fmt::format("{:.2g}", value);
@@ -50,12 +60,16 @@ Answer main_answer(const SizeReport& report) {
                                            counted(sized.flights.size(), "flight"));
   if (sized.answer.is_below) {
     const bool is_for_speed = speed_matters(sized);
-    return {is_for_speed ? "Not sufficient" : "Goal missed",
+    const bool is_known = is_for_speed || is_probably_not_for_speed(report);
+    return {is_for_speed ? "Not sufficient"
+            : is_known   ? "Goal missed; speed is probably not the reason"
+                         : "Goal missed",
             fmt::format(": already at {} × the time of “{}”, fewer than {} of the flights reach "
                         "the goal, {}{}",
                         digits(report.question.least), sized.condition,
                         percent(report.question.success), evidence,
                         is_for_speed ? ""
+                        : is_known   ? " The faster ones do not reach it more often."
                                      : " Whether speed is the reason is not known: the faster ones "
                                        "do not reach it more often.")};
   }
@@ -191,7 +205,9 @@ std::vector<std::string> size_advice(const SizeReport& report) {
                                  is_short ? "Speed up " : "For more headroom, speed up ",
                                  stage.stage, 100.0 * stage.share));
   }
-  if (answer.is_below)
+  if (is_probably_not_for_speed(report))
+    advice.emplace_back("Look for the reason in the program, the scenario and its limits.");
+  else if (answer.is_below)
     advice.push_back(fmt::format("Search below {} ×: `--between {:.2g},{:.2g}`.",
                                  digits(report.question.least), 0.1 * report.question.least,
                                  report.question.least));

@@ -38,11 +38,11 @@ bool is_unsound(const campaign::TrialResult& trial) {
 /// What of the flight missed its limit. Empty: at most metrics without a value.
 std::vector<std::string> missed_in(const campaign::TrialResult& trial) {
   std::vector<std::string> missed;
-  if (has_crash(trial)) missed.emplace_back("no crash");
+  if (has_crash(trial)) missed.emplace_back("“no crash”");
   if (trial.end == campaign::kEndTimeLimit) missed.emplace_back("the time limit");
   if (trial.end == campaign::kEndBatteryEmpty ||
       std::ranges::any_of(trial.energy, &campaign::UavEnergy::is_empty))
-    missed.emplace_back("the battery");
+    missed.emplace_back("“battery not empty”");
   for (const judge::ClauseVerdict& clause : trial.clauses)
     if (!clause.met) missed.push_back(fmt::format("“{}”", clause.name));
   for (const campaign::MetricValue& metric : trial.metrics)
@@ -124,7 +124,7 @@ bool is_within_spread(const ConditionVerdict& verdict) {
 Ruling ruling_of(const ConditionVerdict& verdict, const campaign::ConditionResults& results) {
   const auto& trials = results.trials;
   if (verdict.unsound > 0) return Ruling::kVoid;
-  if (verdict.flown == 0) return verdict.failed > 0 ? Ruling::kSetUpFailed : Ruling::kUndecided;
+  if (verdict.flown == 0) return verdict.failed > 0 ? Ruling::kSetUpFailed : Ruling::kNotFlown;
   if (std::ranges::any_of(trials, is_free_running)) return Ruling::kFreeRunning;
   if (verdict.doubt(campaign::Doubt::Kind::kUnseenWait) != nullptr ||
       verdict.doubt(campaign::Doubt::Kind::kParallelThreads) != nullptr)
@@ -183,11 +183,14 @@ std::vector<Advice> advice_on(const ConditionVerdict& lead) {
   const bool is_too_slow = lead.pace && lead.pace->is_too_slow_for_camera();
   if (lead.failed > 0 && lead.unsound == 0)
     advice.push_back({lead.was_interrupted ? Kind::kFlyAgain : Kind::kMendSetUp});
+  else if (lead.planned > lead.flown + lead.failed)
+    advice.push_back({Kind::kFlyRest});
   if (lead.throttled > 0) advice.push_back({Kind::kCoolBoard, lead.condition});
   switch (lead.ruling) {
     case Ruling::kVoid:
       advice.push_back({Kind::kReadAudit, lead.condition});
       break;
+    case Ruling::kNotFlown:
     case Ruling::kSetUpFailed:
       break;
     case Ruling::kUnseen:
@@ -212,7 +215,6 @@ std::vector<Advice> advice_on(const ConditionVerdict& lead) {
       break;
     case Ruling::kUndecided:
     case Ruling::kFastEnoughSoFar:
-      if (lead.flown == 0) break;
       if (is_within_spread(lead)) advice.push_back({Kind::kQuietMachine});
       if (lead.flown > 1 && lead.is_one_flight())
         advice.push_back({Kind::kVarySeeds});
@@ -299,7 +301,13 @@ std::vector<Verdict> rule(std::vector<Verdict> verdicts,
           {&condition, &scenarios[i]->conditions[j], condition.condition + with});
     }
   }
-  for (const auto& [scenario, conditions] : comparable) explain_misses(conditions);
+  // A sweep makes many comparisons, of which some succeed by chance.
+  std::map<std::string, std::size_t> compared;
+  for (const Verdict& verdict : verdicts)
+    compared[verdict.scenario] += static_cast<std::size_t>(
+        std::ranges::count_if(verdict.conditions, is_evidence));
+  for (const auto& [of, conditions] : comparable)
+    explain_misses(conditions, compared[of.first] * (compared[of.first] - 1) / 2);
   for (Verdict& verdict : verdicts) {
     // Of equal rulings, the condition whose program is the slowest.
     const auto lead =

@@ -72,7 +72,7 @@ TEST_F(MissReasons, AreNotKnownWithoutAReference) {
   EXPECT_THAT(
       verdict_text({verdict()}, Markup::kPlain),
       testing::AllOf(
-          StartsWith("Goal missed: on “board” 5 of 5 flights miss the goal (missed: time "
+          StartsWith("Goal missed: on “board” 5 of 5 flights miss the goal (not met: time "
                      "required ≤ 5 s (5 flights))"),
           HasSubstr("No faster condition was flown, so whether speed matters is not known."),
           HasSubstr("To see whether speed matters, fly on a faster computer")));
@@ -226,7 +226,7 @@ TEST_F(MissReasons, ExcludeTheComputerIfComputingTakesNoTime) {
   EXPECT_EQ(alone.conditions[0].miss->evidence, Evidence::kInstant);
   EXPECT_THAT(verdict_text({alone}, Markup::kPlain),
               StartsWith("Goal missed; speed is probably not the reason: on “instant” 5 of 5 "
-                         "flights miss the goal (missed: time required ≤ 5 s (5 flights))"));
+                         "flights miss the goal (not met: time required ≤ 5 s (5 flights))"));
   EXPECT_THAT(advice_of({alone}),
               ElementsAre("Look for the reason in the program, the scenario and its limits."));
   paces_[0] = scripted(std::chrono::milliseconds(1));
@@ -263,7 +263,7 @@ TEST_F(MissReasons, ExcludeTheComputerIfItReachesTheGoalUnderAnotherCondition) {
   EXPECT_EQ(verdict().lead, slow);
   EXPECT_THAT(answers_of({verdict()})[1].rest,
               HasSubstr("“fast board” has the same computer and sensors, and reaches it."));
-  EXPECT_EQ(rulings_table({verdict()}).rows[poor][1], "goal missed, probably not for speed");
+  EXPECT_EQ(rulings_table({verdict()}).rows[poor][1], "goal missed, probably for another reason");
 
   scenario_.conditions.pop_back();
   paces_.pop_back();
@@ -322,7 +322,7 @@ TEST_F(MissReasons, AreNotSoughtWhereTheFlightsLeaveItOpen) {
   add("good radio", 36, 0, measured(0.02));
   EXPECT_EQ(ruling(poor), Ruling::kUndecided);
   const std::size_t none = add("not flown", 0, 0, measured(0.02));
-  EXPECT_EQ(ruling(none), Ruling::kUndecided);
+  EXPECT_EQ(ruling(none), Ruling::kNotFlown);
 }
 
 }  // namespace

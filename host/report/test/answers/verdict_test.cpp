@@ -64,7 +64,7 @@ TEST(Verdict, RulesByTheExactIntervalOfTheShare) {
                         {36, 0, Ruling::kFastEnough},
                         {98, 2, Ruling::kFastEnough},
                         {9, 1, Ruling::kUndecided},
-                        {0, 0, Ruling::kUndecided}})
+                        {0, 0, Ruling::kNotFlown}})
     EXPECT_EQ(ruling_of(flights(c.reached, c.missed)), c.ruling) << c.reached << "+" << c.missed;
   const campaign::Interval interval = exact_interval(7, 10);
   EXPECT_NEAR(interval.low, 0.3475, 1e-4);
@@ -136,7 +136,7 @@ TEST(Verdict, CountsEachLimitThatWasMissed) {
   EXPECT_EQ(condition.crashed, 1u);
   EXPECT_THAT(condition.missed,
               ElementsAre(std::pair("time required ≤ 5 s", 4u), std::pair("“face”", 1u),
-                          std::pair("the time limit", 1u), std::pair("no crash", 1u)));
+                          std::pair("the time limit", 1u), std::pair("“no crash”", 1u)));
   EXPECT_EQ(condition.closest->first, "Time required");
   EXPECT_NEAR(condition.closest->second, -0.2, 1e-12);
   trials[0].clauses = {
@@ -167,7 +167,7 @@ TEST(Verdict, BeginsWithTheMostUrgentConditionThenTheSlowest) {
 TEST(Verdict, SaysTheAnswerWithItsEvidenceAndWhatToDo) {
   const std::vector<Verdict> verdicts = {verdict_of(flights(5, 5), {slow_pace()})};
   EXPECT_EQ(verdict_text(verdicts, Markup::kMarkdown),
-            "**Goal missed**: on “target” 5 of 10 flights miss the goal (missed: time required "
+            "**Goal missed**: on “target” 5 of 10 flights miss the goal (not met: time required "
             "≤ 5 s (5 flights)); the camera is read 9.0 times a second instead of 30, and “detect” "
             "takes 81 % of the computing time. No faster condition was flown, so whether speed "
             "matters is not known.\n\n"
@@ -259,12 +259,18 @@ TEST(Verdict, SaysWhatItsWordsRestOn) {
   EXPECT_THAT(text(flights(10, 0)), HasSubstr("36 flights decide"));
   EXPECT_THAT(text(flights(9, 1)), HasSubstr("so near to 9 of 10"));
   EXPECT_THAT(text(flights(1, 0)), StartsWith("Fast enough in this flight: "));
-  EXPECT_THAT(text(flights(0, 1)), StartsWith("Goal missed: time required ≤ 5 s, on “target”. "));
+  EXPECT_THAT(text(flights(0, 1)), StartsWith("Goal missed: on “target” the flight does not meet time "
+                                            "required ≤ 5 s. "));
   campaign::ScenarioResults part = flights(8, 0);
   part.conditions[0].planned = 10;
   campaign::invalidate(part.conditions[0].trials[0], "no port");
   EXPECT_THAT(text(part),
               HasSubstr("1 flight failed and is not counted. 2 flights have no result."));
+  campaign::ScenarioResults stopped = flights(0, 0);
+  stopped.conditions[0].planned = 10;
+  EXPECT_THAT(text(stopped),
+              AllOf(StartsWith("No answer: of 10 flights planned on “target”, none has ended."),
+                    HasSubstr("--resume")));
 }
 
 TEST(Verdict, DoubtsTheComputerIsTheCauseIfEveryImageIsRead) {
@@ -400,7 +406,7 @@ TEST(Verdict, OfASweepNamesWhatLimitsItsPoints) {
     point->settings = {{"world", point == &windy ? "\"windy\"" : "\"lost\""}};
   }
   const std::vector<Answer> answers = answers_of({verdict_of(windy), verdict_of(lost)});
-  EXPECT_EQ(answers[0].lead, "Fast enough so far, but not all of the world is simulated");
+  EXPECT_EQ(answers[0].lead, "Fast enough so far, but not everything is simulated as written");
   EXPECT_THAT(answers[0].rest, HasSubstr("<wind>"));
   EXPECT_THAT(answers[1].rest, HasSubstr("The first reason: the board is not found."));
 }
@@ -436,8 +442,8 @@ TEST(Verdict, NamesWhatOfTheWorldIsMissing) {
   warning.can_change_verdict = true;
   scenario.conditions[0].trials[0].warnings = {warning};
   EXPECT_THAT(verdict_text({verdict_of(scenario)}, Markup::kPlain),
-              testing::AllOf(StartsWith("Fast enough in this flight, but not all of the world is "
-                                        "simulated: "),
+              testing::AllOf(StartsWith("Fast enough in this flight, but not everything is "
+                                        "simulated as written: "),
                              HasSubstr("which can change the answer: <wind> is not simulated.\n")));
 }
 

@@ -64,7 +64,8 @@ TEST_F(Junit, HasACaseForTheOutcomeEachMetricAndEachClause) {
   const XMLElement& property = *suite.FirstChildElement("properties")->FirstChildElement();
   EXPECT_STREQ(property.Attribute("name"), "verdict");
   EXPECT_THAT(property.Attribute("value"),
-              StartsWith("Goal missed: “early” and time required ≤ 30 s, on “target”. "));
+              StartsWith("Goal missed: on “target” the flight does not meet “early” and time "
+                         "required ≤ 30 s. "));
   EXPECT_STREQ(suite.Attribute("timestamp"), "2024-05-01T10:00:00");
   const std::string output = suite.FirstChildElement("system-out")->GetText();
   EXPECT_THAT(output, HasSubstr("[seed-0001 / near]\nmargin: 0.5 m\n"));

@@ -25,6 +25,7 @@ inline constexpr double kWantedSuccess = 0.9;
 enum class Ruling {
   kVoid,             ///< a record breaks the rules of time
   kSetUpFailed,      ///< no flight ran
+  kNotFlown,         ///< no flight has ended: the campaign was stopped, or still flies
   kUnseen,           ///< programs waited or computed in ways that Tether does not see
   kNotFastEnough,    ///< fewer than the wanted share reach the goal, or the only flight missed it;
                      ///< and speed is shown to be the reason: see MissReason
@@ -126,6 +127,7 @@ struct Advice {
   enum class Kind {
     kMendSetUp,
     kFlyAgain,       ///< the user stopped it
+    kFlyRest,        ///< the campaign is not complete
     kReadAudit,      ///< subject: the condition
     kShowWaits,      ///< the program waits unseen
     kRunConcurrent,  ///< its threads compute in parallel

@@ -215,7 +215,7 @@ void place_on(Condition& condition, const Target& target);
 void set_unknown_stages(Condition& condition, std::string_view name);
 
 /// Makes the condition's SUTs so many times slower: its factor, the computing time of a scripted
-/// clock, or the costs of a counted one. The name becomes "NAME, 3.16 x slower".
+/// clock, or the costs of a counted one. The name becomes "NAME, 3.16 × slower".
 /// @throws Error(kUsage), about the condition, if its SUTs' time cannot be stretched.
 /// @pre slowdown > 0; it was not slowed down before.
 void slow_down(Condition& condition, double slowdown);
