@@ -32,12 +32,12 @@ int check_world(const WorldCheckOptions& options, const std::stop_token&) {
   const std::string step =
       fmt::format("step {} ms{}", 1e3 * to_seconds(world.step), sim::set_at(world));
   find_back_end("mujoco").prepare(std::move(world), collect);
-  print(fmt::format(
-      "{}: can be used ({}, {}, {}); {}\n{}", file, counted(models, "model"),
-      counted(lights, "light"), step,
-      warnings.empty() ? "everything is simulated as written"
-                       : fmt::format("not simulated as written: {}", counted(warnings.size(), "part")),
-      grouped(warnings, std::numeric_limits<std::size_t>::max())));
+  print(fmt::format("{}: can be used ({}, {}, {}); {}\n{}", file, counted(models, "model"),
+                    counted(lights, "light"), step,
+                    warnings.empty() ? "everything is simulated as written"
+                                     : fmt::format("not simulated as written: {}",
+                                                   counted(warnings.size(), "part")),
+                    grouped(warnings, std::numeric_limits<std::size_t>::max())));
   return 0;
 }
 

@@ -2,6 +2,8 @@
 #include "warning_log.h"
 
 #include <algorithm>
+#include <set>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
@@ -17,11 +19,15 @@ namespace tether::runner {
 namespace {
 
 /// Prepares the simulator of each condition for a copy of the world to which what the condition
-/// changes of UAVs is applied, so that errors are found before anything is written.
+/// changes of UAVs is applied, so that errors are found before anything is written. Conditions that
+/// were slowed down differ in their clocks only.
 void try_conditions(const scenario::CampaignScenario& entry, const sim::World& world,
                     const FindBackEnd& find_back_end, const WarningSink& warn) {
+  std::set<std::string> prepared;
   for (const std::string& name : entry.conditions) {
     const scenario::Condition& condition = *entry.scenario.find_condition(name);
+    const bool is_slowed = !condition.slowed_from.empty();
+    if (!prepared.insert(is_slowed ? condition.slowed_from : name).second) continue;
     sim::World copy = world;
     scenario::resolve_step(entry.scenario, copy);
     scenario::resolve_energy(entry.scenario, condition, copy, warn);

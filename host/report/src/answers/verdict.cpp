@@ -304,8 +304,8 @@ std::vector<Verdict> rule(std::vector<Verdict> verdicts,
   // A sweep makes many comparisons, of which some succeed by chance.
   std::map<std::string, std::size_t> compared;
   for (const Verdict& verdict : verdicts)
-    compared[verdict.scenario] += static_cast<std::size_t>(
-        std::ranges::count_if(verdict.conditions, is_evidence));
+    compared[verdict.scenario] +=
+        static_cast<std::size_t>(std::ranges::count_if(verdict.conditions, is_evidence));
   for (const auto& [of, conditions] : comparable)
     explain_misses(conditions, compared[of.first] * (compared[of.first] - 1) / 2);
   for (Verdict& verdict : verdicts) {

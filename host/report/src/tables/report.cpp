@@ -1,7 +1,6 @@
 #include "tables/report_format.h"
 
 #include <algorithm>
-#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -95,22 +94,32 @@ std::string trials_note(const campaign::ScenarioResults& scenario) {
   return note + ". Times are simulated time.";
 }
 
-// Why a trial has no value: once per trial and reason.
+/// "seed 3", "6 trials, the first of seed 1"
+std::string trials_text(const std::vector<std::uint64_t>& seeds) {
+  if (seeds.size() == 1) return fmt::format("seed {}", seeds.front());
+  return fmt::format("{} trials, the first of seed {}", seeds.size(), seeds.front());
+}
+
+// Why trials have no value: once per reason.
 void add_missing_notes(Table& table, const campaign::ConditionResults& results,
                        const std::vector<Column>& columns) {
+  std::vector<std::pair<std::string, std::vector<std::uint64_t>>> reasons;
   for (const campaign::TrialResult& trial : results.trials) {
-    std::set<std::string> reasons;
     for (const Column& column : columns) {
       const campaign::MetricValue* metric = trial.find_metric(column.name);
       const bool has_value = metric != nullptr && metric->value;
       if (has_value) continue;
       const std::string why = metric != nullptr ? metric->missing_because : "not computed";
       const std::string& reason = trial.outcome == campaign::Outcome::kFailed ? trial.reason : why;
-      if (!reasons.insert(reason).second) continue;
-      table.notes.push_back(fmt::format("Excluded from means: {}, seed {}: {}.", results.condition,
-                                        trial.seed, reason));
+      auto known = std::ranges::find(reasons, reason, [](const auto& one) { return one.first; });
+      if (known == reasons.end()) known = reasons.insert(known, {reason, {}});
+      if (known->second.empty() || known->second.back() != trial.seed)
+        known->second.push_back(trial.seed);
     }
   }
+  for (const auto& [reason, seeds] : reasons)
+    table.notes.push_back(fmt::format("Excluded from means: {}, {}: {}.", results.condition,
+                                      trials_text(seeds), reason));
   if (results.trials.size() == results.planned) return;
   table.notes.push_back(
       fmt::format("No readable result for {} trials of {} (not run yet, or damaged).",

@@ -259,8 +259,9 @@ TEST(Verdict, SaysWhatItsWordsRestOn) {
   EXPECT_THAT(text(flights(10, 0)), HasSubstr("36 flights decide"));
   EXPECT_THAT(text(flights(9, 1)), HasSubstr("so near to 9 of 10"));
   EXPECT_THAT(text(flights(1, 0)), StartsWith("Fast enough in this flight: "));
-  EXPECT_THAT(text(flights(0, 1)), StartsWith("Goal missed: on “target” the flight does not meet time "
-                                            "required ≤ 5 s. "));
+  EXPECT_THAT(text(flights(0, 1)),
+              StartsWith("Goal missed: on “target” the flight does not meet time "
+                         "required ≤ 5 s. "));
   campaign::ScenarioResults part = flights(8, 0);
   part.conditions[0].planned = 10;
   campaign::invalidate(part.conditions[0].trials[0], "no port");
