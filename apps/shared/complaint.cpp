@@ -21,6 +21,23 @@ std::string command_words(const CLI::App& command) {
   return parent ? command_words(*parent) + " " + command.get_name() : command.get_name();
 }
 
+const CLI::App& program_of(const CLI::App& command) {
+  const CLI::App* parent = command.get_parent();
+  return parent ? program_of(*parent) : command;
+}
+
+/// The commands that have this option: "tether run, tether size".
+std::string commands_with(const CLI::App& program, const std::string& option) {
+  std::string words;
+  for (const CLI::App* command : program.get_subcommands([](const CLI::App*) { return true; })) {
+    if (command->get_option_no_throw(option) != nullptr)
+      words += (words.empty() ? "" : ", ") + command_words(*command);
+    if (const std::string further = commands_with(*command, option); !further.empty())
+      words += (words.empty() ? "" : ", ") + further;
+  }
+  return words;
+}
+
 /// First a word that is neither a command, an option nor an argument, with the nearest one that is.
 std::string what_is_wrong(const CLI::App& command, const CLI::ParseError& error) {
   const std::vector<std::string> rest = command.remaining();
@@ -39,6 +56,12 @@ std::string what_is_wrong(const CLI::App& command, const CLI::ParseError& error)
   if (rest.empty() && error.get_name() == "RequiredError" && !subcommands.empty())
     return "no command is given.";
   if (rest.empty()) return std::string(error.what()) + ".";
+  const std::string given = rest.front().substr(0, rest.front().find('='));
+  for (const std::string& option : known)
+    if (given.size() > 3 && option.ends_with("-" + given.substr(2)))
+      return "unknown option '" + given + "'; did you mean '" + option + "'?";
+  if (const std::string others = commands_with(program_of(command), given); !others.empty())
+    return "'" + given + "' is an option of " + others + ", not of this command.";
   return std::string("unexpected ") +
          (rest.front().starts_with('-') ? "option"
           : subcommands.empty()         ? "argument"

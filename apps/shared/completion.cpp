@@ -56,6 +56,18 @@ std::string shipped_kind(const CLI::App& command) {
   return "";
 }
 
+/// The kind of shipped file that the value of an option names; empty: none.
+std::string shipped_kind(const CLI::Option& option) {
+  const std::string name = option.get_lnames().front();
+  return name == "target" || name == "profile" ? name : "";
+}
+
+/// What a value can be, unless any text can.
+std::vector<std::string> choices_of(const CLI::Option& option) {
+  if (option.get_lnames().front() == "simulator") return {"mujoco", "gazebo"};
+  return value_of(option).choices;
+}
+
 /// Shell code that prints the names below the heading "Scenarios" of `tether list`.
 std::string list_names(const std::string& program, const std::string& kind) {
   return program + " list 2>/dev/null | awk 'tolower($1) == \"" + kind +
@@ -72,6 +84,7 @@ struct Cases {
 /// @param of_choices, of_command: code of a case
 Cases cases_of(const CLI::App& program,
                const std::function<std::string(const std::vector<std::string>&)>& of_choices,
+               const std::function<std::string(const std::string&)>& of_kind,
                const std::string& of_files,
                const std::function<std::string(const CLI::App&)>& of_command) {
   Cases cases;
@@ -82,8 +95,10 @@ Cases cases_of(const CLI::App& program,
     for (const CLI::Option* option : options_of(command)) {
       if (!takes_value(*option)) continue;
       const std::string pattern = "'" + words + " --" + option->get_lnames().front() + "'";
-      if (const auto choices = value_of(*option).choices; !choices.empty())
+      if (const auto choices = choices_of(*option); !choices.empty())
         cases.values += "    " + pattern + ") " + of_choices(choices) + " ;;\n";
+      else if (const std::string kind = shipped_kind(*option); !kind.empty())
+        cases.values += "    " + pattern + ") " + of_kind(kind) + " ;;\n";
       else
         with_files.push_back(pattern);
     }
@@ -98,7 +113,8 @@ Cases cases_of(const CLI::App& program,
 std::string bash_script(const CLI::App& program) {
   const std::string name = program.get_name();
   const Cases cases = cases_of(
-      program, [](const auto& choices) { return "words='" + joined(choices) + "'"; }, "return",
+      program, [](const auto& choices) { return "words='" + joined(choices) + "'"; },
+      [&](const auto& kind) { return "words=\"$(" + list_names(name, kind) + ")\""; }, "return",
       [&](const CLI::App& command) {
         std::vector<std::string> words;
         for (const CLI::App* sub : commands_of(command)) words.push_back(sub->get_name());
@@ -144,6 +160,9 @@ std::string zsh_script(const CLI::App& program) {
   };
   const Cases cases = cases_of(
       program, [](const auto& choices) { return "compadd -- " + joined(choices) + "; return"; },
+      [&](const auto& kind) {
+        return "compadd -- ${(f)\"$(" + list_names(name, kind) + ")\"}; _files; return";
+      },
       "_files; return",
       [&](const CLI::App& command) {
         std::vector<std::string> options, commands;
@@ -186,6 +205,14 @@ fi
 )";
 }
 
+/// The names as a command between double quotes.
+std::string fish_names(const std::string& program, const std::string& kind) {
+  std::string escaped;
+  for (const char c : list_names(program, kind))
+    escaped += c == '$' || c == '"' ? std::string{'\\', c} : std::string(1, c);
+  return "\"(" + escaped + ")\"";
+}
+
 std::string fish_script(const CLI::App& program) {
   const std::string name = program.get_name();
   std::string script;
@@ -205,22 +232,18 @@ std::string fish_script(const CLI::App& program) {
     for (const CLI::Option* option : options_of(command)) {
       script += here + " -l " + option->get_lnames().front();
       if (takes_value(*option)) script += " -r";
-      if (const auto choices = value_of(*option).choices; !choices.empty())
+      if (const auto choices = choices_of(*option); !choices.empty())
         script += " -f -a '" + joined(choices) + "'";
+      else if (const std::string kind = shipped_kind(*option); !kind.empty())
+        script += " -a " + fish_names(name, kind);
       script += " -d " + quoted(option->get_description(), "\\'") + "\n";
     }
     for (const CLI::Option* option : command.get_options())
       if (const auto choices = value_of(*option).choices;
           !option->nonpositional() && !choices.empty())
         script += here + " -f -a '" + joined(choices) + "'\n";
-    if (const std::string kind = shipped_kind(command); !kind.empty()) {
-      std::string names = list_names(name, kind);
-      for (std::size_t at = 0; (at = names.find('$', at)) != std::string::npos; at += 2)
-        names.insert(at, 1, '\\');
-      for (std::size_t at = 0; (at = names.find('"', at)) != std::string::npos; at += 2)
-        names.insert(at, 1, '\\');
-      script += here + " -a \"(" + names + ")\"\n";
-    }
+    if (const std::string kind = shipped_kind(command); !kind.empty())
+      script += here + " -a " + fish_names(name, kind) + "\n";
   });
   return script;
 }

@@ -20,6 +20,7 @@ class Completion : public testing::Test {
     CLI::App* run = program_.add_subcommand("run", "Run one trial. More");
     run->add_option("--format", text_, "It's a format")->check(CLI::IsMember({"text", "html"}));
     run->add_option("--out", text_, "A folder");
+    run->add_option("--target", text_, "A target");
     run->add_flag("--force", flag_, "Replace");
     run->add_option("scenario", text_, "A scenario");
     CLI::App* world = program_.add_subcommand("world", "Check worlds");
@@ -29,7 +30,7 @@ class Completion : public testing::Test {
     // What `PROGRAM list` prints.
     const std::string program = folder_.write(
         "demo-1",
-        "#!/bin/sh\nprintf 'scenarios\\n  face_anchor  Turns\\n\\nworlds\\n  room  A\\n'\n");
+        "#!/bin/sh\nprintf 'scenarios\\n  face_anchor  Turns\\n\\ntargets\\n  pi  A\\n'\n");
     std::filesystem::permissions(program, std::filesystem::perms::owner_all);
   }
 
@@ -68,6 +69,7 @@ TEST_F(Completion, OfBashHasCommandsOptionsChoicesAndShippedNames) {
   EXPECT_EQ(in_bash("demo-1 run --fo"), "--format --force\n");
   EXPECT_EQ(in_bash("demo-1 run --format ''"), "text html\n");
   EXPECT_EQ(in_bash("demo-1 run --out ''"), "\n");  // file names, which bash adds
+  EXPECT_EQ(in_bash("demo-1 run --target ''"), "pi\n");
   EXPECT_EQ(in_bash("demo-1 run fa"), "face_anchor\n");
   EXPECT_EQ(in_bash("demo-1 completion z"), "zsh\n");
 }
@@ -81,6 +83,7 @@ TEST_F(Completion, OfFishHasThem) {
   EXPECT_EQ(in_fish("demo-1 world ch"), "check\tCheck a world\n");
   EXPECT_EQ(in_fish("demo-1 run --fo"), "--force\tReplace\n--format\tIt's a format\n");
   EXPECT_EQ(in_fish("demo-1 run --format h"), "html\tIt's a format\n");
+  EXPECT_EQ(in_fish("demo-1 run --target p"), "pi\tA target\n");
   EXPECT_EQ(in_fish("demo-1 run fa"), "face_anchor\n");
   EXPECT_EQ(in_fish("demo-1 completion z"), "zsh\n");
 }
@@ -105,6 +108,7 @@ TEST_F(Completion, OfZshHasThem) {
             "--help:Print this help message and exit\n--tolerant:Correct\n");
   EXPECT_EQ(in_zsh("demo-1 run --format ''"), "text html\n");
   EXPECT_EQ(in_zsh("demo-1 run --out ''"), "files\n");
+  EXPECT_EQ(in_zsh("demo-1 run --target ''"), "pi\nfiles\n");
   EXPECT_EQ(in_zsh("demo-1 run fa"), "face_anchor\nfiles\n");
 }
 

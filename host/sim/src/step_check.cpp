@@ -115,7 +115,9 @@ double longest_ms(Holds holds) {
 
 std::string set_at(const World& world) {
   if (world.step_at.file.empty()) return "";
-  return fmt::format(" (set at {}:{})", world.step_at.file, world.step_at.line);
+  const int line = world.step_at.line;
+  return fmt::format(" (set {} {}{})", line > 0 ? "at" : "for", world.step_at.file,
+                     line > 0 ? fmt::format(":{}", line) : "");
 }
 
 HoverLoop hover_loop(const uav::MultirotorParameters& airframe, double gravity_m_s2,

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -260,6 +261,9 @@ std::string change_junit(const timing::Timing& now, const timing::Timing& before
 
 std::string junit_of_error(const std::string& name, const std::string& message) {
   Suite suite{.name = name};
+  const auto now = std::chrono::system_clock::now();
+  suite.started_at =
+      fmt::format("{:%Y-%m-%dT%H:%M:%S}", fmt::gmtime(std::chrono::system_clock::to_time_t(now)));
   suite.cases = {error_case("run", message)};
   return text_of({suite});
 }

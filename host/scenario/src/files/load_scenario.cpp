@@ -356,7 +356,20 @@ const Condition* Scenario::find_condition(std::string_view condition) const {
   return found == conditions.end() ? nullptr : &*found;
 }
 
-Scenario load_scenario(const std::filesystem::path& file, const std::vector<Setting>& settings) {
+namespace {
+
+/// If the error is about a key that a setting replaced: the same error, which names the setting.
+Error with_setting(const Error& error, const std::vector<Setting>& settings) {
+  for (const auto& [key, value] : settings)
+    if (const std::string last = key.substr(key.rfind('.') + 1); last == error.subject())
+      return Error(error.code(), error.where(),
+                   fmt::format("{}; the value is that of {}={}, not the file's",
+                               error.what() + located(error.where(), "").size(), key, value))
+          .about(last);
+  return error;
+}
+
+Scenario read_scenario(const std::filesystem::path& file, const std::vector<Setting>& settings) {
   Scenario scenario;
   scenario.file = std::filesystem::absolute(file).lexically_normal();
   toml::Document document = toml::Document::load(scenario.file);
@@ -384,6 +397,17 @@ Scenario load_scenario(const std::filesystem::path& file, const std::vector<Sett
     if (setting.key == kUavCount) keep_first_uavs(scenario, setting.value);
   sort_files(scenario);
   return scenario;
+}
+
+}  // namespace
+
+Scenario load_scenario(const std::filesystem::path& file, const std::vector<Setting>& settings) {
+  try {
+    return read_scenario(file, settings);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::kBadFile) throw;
+    throw with_setting(error, settings);
+  }
 }
 
 void lay_profile(Scenario& scenario, const Profile& profile) {

@@ -32,6 +32,7 @@ TEST_F(Settings, AddKeysThatTheFileLacks) {
             std::numeric_limits<double>::infinity());
   const Error wrong = bad_file_error([&] { load({{"connect_limit_s", "-7"}}); });
   EXPECT_EQ(wrong.where().line, 0) << "the file has no such line";
+  EXPECT_THAT(wrong.what(), testing::HasSubstr("connect_limit_s=-7"));
   const Error error = bad_file_error([&] { load({{"condition.cpu_factr", "2"}}); });
   EXPECT_EQ(error.subject(), "cpu_factr");
 }

@@ -110,6 +110,11 @@ void read_scene(const sdf::Scene* scene, World& world) {
 }
 
 World read_world(const SdfSource& source, const WarningSink& warn) {
+  if (source.root().WorldCount() == 0 && source.root().Model() != nullptr)
+    throw Error(ErrorCode::kBadFile, {source.file().string(), 0},
+                "is a model, not a world. Give a file with a <world>; it can <include> this model, "
+                "and a scenario names it with 'model' if it is a UAV")
+        .about("<world>");
   if (source.root().WorldCount() != 1) {
     throw Error(ErrorCode::kBadFile, {source.file().string(), 0},
                 "has " + std::to_string(source.root().WorldCount()) +
