@@ -1,11 +1,14 @@
 #include "local_sut.h"
 
 #include <algorithm>
+#include <sstream>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include <tether/base/error.h>
+#include <tether/base/suggest.h>
+#include <tether/os/captured_run.h>
 #include <tether/os/child_process.h>
 #include <tether/os/counted_program.h>
 #include <tether/os/machine.h>
@@ -61,6 +64,29 @@ bool is_started_here(const scenario::Computer& own) {
 /// Its counts are in this machine's memory, so that it runs here, whoever starts it.
 bool is_counted(const scenario::Computer& own) {
   return own.target && own.target->emulator;
+}
+
+/// The emulator lists a model in each line: "x86 max   (description)", "  cortex-a53".
+void require_cpu_model(const scenario::Target& target) {
+  const std::string& wanted = target.emulator->cpu_model;
+  if (wanted.empty()) return;
+  constexpr Duration kLimit = std::chrono::seconds(10);
+  const os::Captured list =
+      os::run_captured({target.emulator->program, "-cpu", "help"}, "", kLimit);
+  const std::string model = wanted.substr(0, wanted.find(','));  // features follow
+  std::istringstream words(list.out);
+  std::vector<std::string> models;
+  for (std::string word; words >> word;) models.push_back(word);
+  if (models.empty() || std::ranges::count(models, model) > 0) return;
+  const std::vector<std::string_view> known(models.begin(), models.end());
+  const std::string_view near = nearest(model, known);
+  throw Error(ErrorCode::kBadFile, {target.file.string()},
+              fmt::format("'cpu_model' is \"{}\", which {} does not have{} `{} -cpu help` lists "
+                          "its models",
+                          wanted, target.emulator->program,
+                          near.empty() ? "." : fmt::format("; did you mean \"{}\"?", near),
+                          target.emulator->program))
+      .about("cpu_model");
 }
 
 void require_cores(const scenario::Scenario& scenario, const scenario::Condition& condition) {
@@ -130,6 +156,7 @@ std::vector<std::filesystem::path> sut_programs(const scenario::Scenario& scenar
                   fmt::format("the SUT of UAV \"{}\": {}", uav.placement.name, e.what()))
           .about(uav.placement.name);
     }
+    if (is_counted(own)) require_cpu_model(*own.target);
   }
   if (needs_plugin) programs.push_back(os::find_counter_plugin());
   return programs;

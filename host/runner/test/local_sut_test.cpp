@@ -175,6 +175,28 @@ TEST(LocalSut, ChecksAProgramThatTheUserStartsOnlyIfItIsCounted) {
             "uav1");
 }
 
+TEST(LocalSut, RefusesACpuModelThatTheEmulatorLacks) {
+  const ScratchFolder scratch;
+  const std::string emulator =
+      scratch.write("emulator", "#!/bin/sh\necho 'x86 Haswell  (Intel)'\n");
+  std::filesystem::permissions(emulator, std::filesystem::perms::owner_all);
+  scenario::Scenario scenario;
+  scenario.uavs.resize(1);
+  scenario.uavs[0].sut.command = {"/bin/true"};
+  scenario::Condition condition;
+  condition.computers[0].target = target({emulator}, "");
+  os::Emulator& counts = condition.computers[0].target->emulator.emplace();
+  counts.program = emulator;
+  counts.cpu_model = "Haswell,+avx";
+  ::setenv("TETHER_COUNTER_PLUGIN", scratch.write("plugin.so", "").c_str(), 1);
+  EXPECT_NO_THROW(require_sut_programs(scenario, condition));
+  counts.cpu_model = "Haswel";
+  const Error error = bad_file_error([&] { require_sut_programs(scenario, condition); });
+  EXPECT_EQ(error.subject(), "cpu_model");
+  EXPECT_THAT(error.what(), testing::HasSubstr("did you mean \"Haswell\""));
+  ::unsetenv("TETHER_COUNTER_PLUGIN");
+}
+
 TEST(LocalSut, NeedsThePluginForACountedTarget) {
   const ScratchFolder scratch;
   scenario::Scenario scenario;
