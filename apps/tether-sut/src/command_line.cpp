@@ -333,6 +333,8 @@ CLI::App* add_subcommand(CLI::App& app, std::string_view name, std::string_view 
                          Words& words, Define define) {
   CLI::App* command = app.add_subcommand(std::string(name), std::string(description));
   define(*command);
+  command->add_flag("--check", words.line.only_checks,
+                    "Only read these options and their files: exit code 2 if something is wrong");
   add_link_options(*command, words.line);
   add_device_options(*command, words.devices);
   command->footer(footer_of(name));

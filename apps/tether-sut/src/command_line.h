@@ -22,6 +22,7 @@ struct CommandLine {
   std::optional<std::string> address;
   std::optional<std::string> uav;
   std::optional<std::string> clock;
+  bool only_checks = false;  ///< nothing is left to do
 };
 
 /// A text to print instead of running a command, and the exit code: 0 for --help, --version

@@ -15,6 +15,7 @@ int run(int argc, char** argv) {
     return refused->exit_code;
   }
   auto& line = std::get<CommandLine>(parsed);
+  if (line.only_checks) return 0;
   line.real_row.keep_image = in_run_folder(line.real_row.keep_image);
   if (line.characterize) line.characterize->out = in_run_folder(line.characterize->out);
   return run_command(line, {std::cout, std::cerr});

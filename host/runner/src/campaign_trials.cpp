@@ -51,6 +51,8 @@ void add_programs(const scenario::CampaignScenario& entry,
             .about(computer.name);
     for (const auto& program : sut_programs(entry.scenario, condition))
       if (std::find(files.begin(), files.end(), program) == files.end()) files.push_back(program);
+    // The same under each condition.
+    if (&name == &entry.conditions.front()) require_sut_arguments(entry.scenario, condition);
   }
 }
 

@@ -162,10 +162,36 @@ std::vector<std::filesystem::path> sut_programs(const scenario::Scenario& scenar
   return programs;
 }
 
+void require_sut_arguments(const scenario::Scenario& scenario,
+                           const scenario::Condition& condition) {
+  constexpr Duration kLimit = std::chrono::seconds(10);
+  constexpr int kWrongUse = 2;
+  for (std::size_t i = 0; i < scenario.uavs.size(); ++i) {
+    const std::string& name = scenario.uavs[i].placement.name;
+    const scenario::Sut& sut = scenario.uavs[i].sut;
+    const scenario::Computer& own = computer_of(condition, i);
+    if (std::filesystem::path(sut.command.front()).filename() != "tether-sut" ||
+        !is_started_here(own))
+      continue;
+    scenario::Sut alone = sut;
+    alone.concurrent = false;
+    LocalSutCommand command = local_sut_command(alone, own.target);
+    if (command.programs.size() == 1) command.words.front() = command.programs.front().string();
+    command.words.emplace_back("--check");
+    const os::Captured checked = os::run_captured(command.words, "", kLimit);
+    if (checked.code != kWrongUse) continue;
+    throw Error(ErrorCode::kBadFile, {scenario.file.string()},
+                fmt::format("the SUT of UAV \"{}\" does not understand its command line: {}", name,
+                            checked.err.substr(0, checked.err.find('\n'))))
+        .about(name);
+  }
+}
+
 void require_sut_programs(const scenario::Scenario& scenario, const scenario::Condition& condition,
                           bool by_user) {
   sut_programs(scenario, condition, by_user);
   if (by_user) return;
+  require_sut_arguments(scenario, condition);
   for (std::size_t uav = 0; uav < scenario.uavs.size(); ++uav)
     if (is_started_here(computer_of(condition, uav))) return require_cores(scenario, condition);
 }
