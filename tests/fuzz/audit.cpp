@@ -37,8 +37,11 @@ record::Header header(Choices& choices) {
   header.step = time<Duration>(choices);
   header.ground_truth_period = time<Duration>(choices);
   for (std::size_t i = choices.below(4); i > 0; --i)
-    header.suts.push_back(
-        {name(choices), "sut", "cpu", 1.0, time<Duration>(choices), choices.coin()});
+    header.suts.push_back({name(choices),
+                           "sut",
+                           {computer::ClockKind::kCpu},
+                           time<Duration>(choices),
+                           choices.coin()});
   for (std::size_t i = choices.below(4); i > 0; --i)
     header.sensors.push_back({name(choices), name(choices), "camera", choices.coin(),
                               time<Duration>(choices), time<Duration>(choices),
