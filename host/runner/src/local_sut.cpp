@@ -181,7 +181,7 @@ void require_sut_arguments(const scenario::Scenario& scenario,
     const os::Captured checked = os::run_captured(command.words, "", kLimit);
     if (checked.code != kWrongUse) continue;
     throw Error(ErrorCode::kBadFile, {scenario.file.string()},
-                fmt::format("the SUT of UAV \"{}\" does not understand its command line: {}", name,
+                fmt::format("the SUT of UAV \"{}\" cannot fly this: {}", name,
                             checked.err.substr(0, checked.err.find('\n'))))
         .about(name);
   }

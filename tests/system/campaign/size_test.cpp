@@ -51,7 +51,7 @@ TEST_F(Size, FindsTheSlowestSufficientComputerAlsoAfterCtrlC) {
   EXPECT_EQ(found["scenario"], "hover");
   EXPECT_EQ(found["condition"], "host");
   EXPECT_THAT(found["summary"][1].get<std::string>(),
-              AllOf(StartsWith("Missed: "), HasSubstr("time required ≤ 3.5 s")));
+              AllOf(StartsWith("Not met: "), HasSubstr("time required ≤ 3.5 s")));
   EXPECT_EQ(found["question"]["between"], (nlohmann::json{1.0, 20.0}));
   EXPECT_EQ(found["answer"]["where"], "within");
   EXPECT_EQ(found["answer"]["narrow"], true);

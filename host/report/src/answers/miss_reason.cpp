@@ -83,18 +83,12 @@ bool is_instant(const Compared& one) {
   return one.pace() && one.pace()->speed.is_instant();
 }
 
-/// Whether chance does not explain that `a` reaches the goal more often: Fisher's exact test with
-/// Bonferroni's correction for that many comparisons. If the seeds change nothing, chance has no
-/// part.
+/// Whether chance does not explain that `a` reaches the goal more often, with Bonferroni's
+/// correction for that many comparisons.
 bool reaches_more_often(const ConditionVerdict& a, const ConditionVerdict& b,
                         std::size_t comparisons) {
-  const auto is_certain = [](const ConditionVerdict& one) {
-    return one.is_one_flight() && one.flown > 1;
-  };
-  const campaign::Count of_a{a.distinct_reached, a.distinct}, of_b{b.distinct_reached, b.distinct};
-  if (of_a.of_them * of_b.all <= of_b.of_them * of_a.all) return false;
-  return (is_certain(a) && is_certain(b)) ||
-         campaign::fisher_exact(of_a, of_b) * static_cast<double>(comparisons) < kSignificant;
+  return a.distinct_reached * b.distinct > b.distinct_reached * a.distinct &&
+         chance_of(a, b) * static_cast<double>(comparisons) < kSignificant;
 }
 
 bool costs_no_more(const Pace& image, const Pace& other) {
@@ -243,7 +237,15 @@ Ruling ruling_on(Evidence evidence) {
 }  // namespace
 
 bool is_evidence(const ConditionVerdict& one) {
-  return one.ruling > Ruling::kUnseen && one.ruling < Ruling::kFreeRunning;
+  return one.ruling > Ruling::kUnseen && one.ruling < Ruling::kFreeRunning && one.flown > 0;
+}
+
+double chance_of(const ConditionVerdict& a, const ConditionVerdict& b) {
+  const auto is_certain = [](const ConditionVerdict& one) {
+    return one.is_one_flight() && one.flown > 1;
+  };
+  if (is_certain(a) && is_certain(b)) return a.distinct_reached == b.distinct_reached ? 1.0 : 0.0;
+  return campaign::fisher_exact({a.distinct_reached, a.distinct}, {b.distinct_reached, b.distinct});
 }
 
 void explain_misses(std::span<const ToExplain> conditions, std::size_t comparisons) {

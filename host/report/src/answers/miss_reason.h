@@ -17,6 +17,10 @@ struct ToExplain {
 /// Whether its flights say anything of a computer.
 bool is_evidence(const ConditionVerdict& one);
 
+/// The probability that flights which reach the goal equally often differ as much: Fisher's exact
+/// test. If the seeds change nothing, chance has no part.
+double chance_of(const ConditionVerdict& a, const ConditionVerdict& b);
+
 /// Finds why each condition with the ruling kGoalMissed misses its goal, and rules by it. Whatever
 /// is not known to be the same counts as different.
 /// @param comparisons how many pairs of conditions and points of the scenario can be compared, here

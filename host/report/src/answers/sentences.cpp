@@ -1,4 +1,5 @@
 #include "answers/board_pace.h"
+#include "answers/miss_reason.h"
 #include "answers/sufficient.h"
 #include "tables/report_format.h"
 
@@ -234,12 +235,12 @@ struct Words {
 constexpr std::array kWords = {
     Words{"void", "Void"},
     Words{"no answer (failed)", "No answer"},
-    Words{"no answer (not flown)", "No answer"},
     Words{"no answer (unseen time)", "No answer"},
     Words{"not fast enough", "Not fast enough", "Not fast enough in this flight"},
     Words{"goal missed", "Goal missed"},
     Words{"goal missed, probably for another reason",
           "Goal missed; speed is probably not the reason"},
+    Words{"no answer (not flown)", "No answer"},
     Words{"undecided", "Undecided"},
     Words{"fast enough so far", "Fast enough so far", "Fast enough in this flight"},
     Words{"fast enough", "Fast enough"},
@@ -282,14 +283,11 @@ std::string cause_text(const ConditionVerdict& condition) {
 /// Of a sweep: how many pairs of its points differ in how often they reach the goal.
 std::optional<Answer> differences_between(const std::vector<Verdict>& points) {
   std::vector<double> p_values;
-  const auto reached = [](const ConditionVerdict& one) {
-    return campaign::Count{one.distinct_reached, one.distinct};
-  };
   for (std::size_t i = 0; i < points.front().conditions.size(); ++i)
     for (std::size_t b = 1; b < points.size(); ++b)
       for (std::size_t a = 0; a < b; ++a)
-        p_values.push_back(campaign::fisher_exact(reached(points[a].conditions[i]),
-                                                  reached(points[b].conditions[i])));
+        if (is_evidence(points[a].conditions[i]) && is_evidence(points[b].conditions[i]))
+          p_values.push_back(chance_of(points[a].conditions[i], points[b].conditions[i]));
   if (p_values.empty()) return std::nullopt;
   const auto differing =
       std::ranges::count_if(campaign::holm(p_values), [](double p) { return p < kSignificant; });
@@ -369,11 +367,11 @@ std::vector<Answer> answers_on_flights(std::span<const campaign::TrialResult* co
   std::vector<Answer> answers;
   const ConditionVerdict all = verdict_of(results_of("", trials));
   if (!all.left_out.empty())
-    answers.push_back({"Not all of the world is simulated", "." + left_out_text(all)});
+    answers.push_back({"Not everything is simulated as written", "." + left_out_text(all)});
   if (const FlightsInDoubt* busy = all.doubt(campaign::Doubt::Kind::kBusyMachine))
     answers.push_back({"Busy machine", ": " + doubt_text(*busy, all) + "."});
   if (const MissedLimits missed = missed_limits(trials); !missed.empty())
-    answers.push_back({"Missed", ": " + missed_text(missed) + "."});
+    answers.push_back({"Not met", ": " + missed_text(missed) + "."});
   if (!unreadable.empty())
     answers.push_back({"The computing times are not known", ": " + unreadable + "."});
   return answers;

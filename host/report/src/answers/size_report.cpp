@@ -99,7 +99,7 @@ Answer board_answer(const Board& board, const SizedCondition& sized) {
   }
   return {"Undecided", fmt::format(": {} may not be fast enough, because {}.", name,
                                    answer.is_above   ? "no flight was as slow as that"
-                                   : answer.is_below ? "whether speed matters is not known"
+                                   : answer.is_below ? "the flights do not show that speed matters"
                                                      : "it is too close to the limit")};
 }
 

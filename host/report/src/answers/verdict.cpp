@@ -183,15 +183,15 @@ std::vector<Advice> advice_on(const ConditionVerdict& lead) {
   const bool is_too_slow = lead.pace && lead.pace->is_too_slow_for_camera();
   if (lead.failed > 0 && lead.unsound == 0)
     advice.push_back({lead.was_interrupted ? Kind::kFlyAgain : Kind::kMendSetUp});
-  else if (lead.planned > lead.flown + lead.failed)
+  else if (lead.unsound == 0 && lead.planned > lead.flown + lead.failed)
     advice.push_back({Kind::kFlyRest});
   if (lead.throttled > 0) advice.push_back({Kind::kCoolBoard, lead.condition});
   switch (lead.ruling) {
     case Ruling::kVoid:
       advice.push_back({Kind::kReadAudit, lead.condition});
       break;
-    case Ruling::kNotFlown:
     case Ruling::kSetUpFailed:
+    case Ruling::kNotFlown:
       break;
     case Ruling::kUnseen:
       if (lead.doubt(campaign::Doubt::Kind::kUnseenWait) != nullptr)

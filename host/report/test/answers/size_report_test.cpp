@@ -18,7 +18,7 @@ TEST(SizeReport, AnswersFirstThenJudgesTheBoards) {
   EXPECT_EQ(sentences[0],
             "Sufficient up to 3.1 × slower than “target” [2.7, 3.6], 95 %; 10 flights.");
   EXPECT_EQ(sentences[1], "Fast enough: pi.toml (1.9 ×) has 1.6 × headroom.");
-  EXPECT_EQ(sentences[2], "Missed: time required ≤ 6.5 s (5 flights).");
+  EXPECT_EQ(sentences[2], "Not met: time required ≤ 6.5 s (5 flights).");
 }
 
 TEST(SizeReport, SaysWhenTheAnswerIsOutsideTheRange) {

@@ -25,12 +25,12 @@ inline constexpr double kWantedSuccess = 0.9;
 enum class Ruling {
   kVoid,             ///< a record breaks the rules of time
   kSetUpFailed,      ///< no flight ran
-  kNotFlown,         ///< no flight has ended: the campaign was stopped, or still flies
   kUnseen,           ///< programs waited or computed in ways that Tether does not see
   kNotFastEnough,    ///< fewer than the wanted share reach the goal, or the only flight missed it;
                      ///< and speed is shown to be the reason: see MissReason
   kGoalMissed,       ///< the same, but whether speed is the reason is not known
   kOtherReason,      ///< the same, but speed is probably not the reason
+  kNotFlown,         ///< no flight has ended: the campaign was stopped, or still flies
   kUndecided,        ///< the flights show neither
   kFastEnoughSoFar,  ///< every flight reached the goal, but they are too few to be sure
   kFastEnough,       ///< at least the wanted share reach the goal
