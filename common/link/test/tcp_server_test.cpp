@@ -165,7 +165,7 @@ TEST_F(TcpServer, ReportsNothingOfAPeerThatWasClosedForItsMessage) {
 }
 
 TEST_F(TcpServer, CloseAndDestructorSendQueuedFramesFirst) {
-  const Reply reply = image_reply(2000);  // more than a socket takes at once
+  const Reply reply = image_reply(1200);  // more than a socket takes at once
   listen();
   RawClient closed = connect();
   expect_served(closed);
