@@ -11,6 +11,7 @@
 #include <tether/calibration/machine.h>
 #include <tether/calibration/profile_text.h>
 #include <tether/calibration/whole_file.h>
+#include <tether/os/clock.h>
 #include <tether/rig/png.h>
 
 /// Each command runs its part of the libraries on a connection and prints the outcome: the mission
@@ -80,7 +81,7 @@ Result<calibration::MeasuredProfile> make_profile(const CommandLine& line,
   calibration::MeasuredProfile profile;
   profile.name = options.name.empty() ? calibration::profile_name_from(calibration::host_name())
                                       : options.name;
-  profile.when = calibration::utc_now();
+  profile.when = os::utc_now();
   profile.where = connection.origin.location;
   profile.acquisitions = options.acquisitions;
   profile.experiments = options.experiments;

@@ -1,3 +1,4 @@
+#include <array>
 #include <cerrno>
 
 #include <tether/os/clock.h>
@@ -8,6 +9,15 @@ Duration read_clock(clockid_t clock) {
   timespec t{};
   ::clock_gettime(clock, &t);
   return std::chrono::seconds(t.tv_sec) + Duration(t.tv_nsec);
+}
+
+std::string utc_now() {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  std::array<char, 32> text{};
+  std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc);
+  return text.data();
 }
 
 void sleep_until(Duration monotonic) {

@@ -14,6 +14,7 @@
 #include <tether/calibration/profile_text.h>
 #include <tether/calibration/sensor_table.h>
 #include <tether/calibration/whole_file.h>
+#include <tether/os/clock.h>
 
 namespace tether::calibration {
 namespace {
@@ -108,7 +109,7 @@ Result<Calibration> measure_machine(const CalibrateOptions& options, const TellR
   if (!core) return core.failure();
   calibration.program = "tether-sut " + std::string(version());
   calibration.opencv = CV_VERSION;
-  calibration.when = utc_now();
+  calibration.when = os::utc_now();
   calibration.machine.cpu_index = *core;
   read_governor(*core, calibration.machine);
   calibration.machine.mhz_before = read_mhz(*core);

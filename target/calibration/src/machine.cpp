@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <ctime>
 #include <fstream>
 
 #include <sched.h>
@@ -102,15 +101,6 @@ Result<int> bind_to_core(std::optional<int> cpu_index) {
                    "core " + std::to_string(cpu) + " is not available to this program"};
   }
   return cpu;
-}
-
-std::string utc_now() {
-  const std::time_t now = std::time(nullptr);
-  std::tm utc{};
-  gmtime_r(&now, &utc);
-  std::array<char, 32> text{};
-  std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc);
-  return text.data();
 }
 
 }  // namespace tether::calibration

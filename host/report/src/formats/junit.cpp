@@ -7,11 +7,11 @@
 #include <utility>
 #include <vector>
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <tether/campaign/campaign_plan.h>
+#include <tether/os/clock.h>
 #include <tether/report/junit.h>
 #include <tether/report/timing_page.h>
 #include <tether/report/uavs_report.h>
@@ -261,9 +261,7 @@ std::string change_junit(const timing::Timing& now, const timing::Timing& before
 
 std::string junit_of_error(const std::string& name, const std::string& message) {
   Suite suite{.name = name};
-  const auto now = std::chrono::system_clock::now();
-  suite.started_at =
-      fmt::format("{:%Y-%m-%dT%H:%M:%S}", fmt::gmtime(std::chrono::system_clock::to_time_t(now)));
+  suite.started_at = os::utc_now().substr(0, suite.started_at.size());
   suite.cases = {error_case("run", message)};
   return text_of({suite});
 }

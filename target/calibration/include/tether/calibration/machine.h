@@ -25,7 +25,4 @@ Result<int> bind_to_core(std::optional<int> cpu_index);
 /// Reads the governor of that core into `machine`.
 void read_governor(int cpu_index, Machine& machine, const std::string& root = "");
 
-/// The current time as in files: "2026-01-31T12:00:00Z".
-std::string utc_now();
-
 }  // namespace tether::calibration
