@@ -128,6 +128,7 @@ runner::TrialSpec make_spec(const RunOptions& options) {
   spec.waits_for_sut = std::holds_alternative<WaitForSut>(parse_target_option(options.target));
   spec.uses_tunnel = options.tunnel;
   spec.worlds = options.worlds;
+  spec.was_tried = options.worlds != nullptr;  // by the campaign that keeps them
   require_use_of_tunnel(spec);
   return spec;
 }

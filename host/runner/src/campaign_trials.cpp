@@ -39,6 +39,7 @@ void try_conditions(const scenario::CampaignScenario& entry, const sim::World& w
 /// Adds the programs that start the SUTs of each condition here.
 void add_programs(const scenario::CampaignScenario& entry,
                   std::vector<std::filesystem::path>& files) {
+  std::set<std::string> tried;
   for (const std::string& name : entry.conditions) {
     const scenario::Condition& condition = *entry.scenario.find_condition(name);
     scenario::require_clock(entry.scenario, condition);
@@ -51,8 +52,8 @@ void add_programs(const scenario::CampaignScenario& entry,
             .about(computer.name);
     for (const auto& program : sut_programs(entry.scenario, condition))
       if (std::find(files.begin(), files.end(), program) == files.end()) files.push_back(program);
-    // The same under each condition.
-    if (&name == &entry.conditions.front()) require_sut_arguments(entry.scenario, condition);
+    if (condition.slowed_from.empty() || tried.insert(condition.slowed_from).second)
+      try_suts(entry.scenario, condition);
   }
 }
 

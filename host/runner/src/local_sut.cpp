@@ -156,23 +156,22 @@ std::vector<std::filesystem::path> sut_programs(const scenario::Scenario& scenar
                   fmt::format("the SUT of UAV \"{}\": {}", uav.placement.name, e.what()))
           .about(uav.placement.name);
     }
-    if (is_counted(own)) require_cpu_model(*own.target);
   }
   if (needs_plugin) programs.push_back(os::find_counter_plugin());
   return programs;
 }
 
-void require_sut_arguments(const scenario::Scenario& scenario,
-                           const scenario::Condition& condition) {
+void try_suts(const scenario::Scenario& scenario, const scenario::Condition& condition,
+              bool by_user) {
   constexpr Duration kLimit = std::chrono::seconds(10);
   constexpr int kWrongUse = 2;
   for (std::size_t i = 0; i < scenario.uavs.size(); ++i) {
     const std::string& name = scenario.uavs[i].placement.name;
     const scenario::Sut& sut = scenario.uavs[i].sut;
     const scenario::Computer& own = computer_of(condition, i);
-    if (std::filesystem::path(sut.command.front()).filename() != "tether-sut" ||
-        !is_started_here(own))
-      continue;
+    if (is_counted(own)) require_cpu_model(*own.target);
+    const bool is_shipped = std::filesystem::path(sut.command.front()).filename() == "tether-sut";
+    if (by_user || !is_shipped || !is_started_here(own)) continue;
     scenario::Sut alone = sut;
     alone.concurrent = false;
     LocalSutCommand command = local_sut_command(alone, own.target);
@@ -191,7 +190,6 @@ void require_sut_programs(const scenario::Scenario& scenario, const scenario::Co
                           bool by_user) {
   sut_programs(scenario, condition, by_user);
   if (by_user) return;
-  require_sut_arguments(scenario, condition);
   for (std::size_t uav = 0; uav < scenario.uavs.size(); ++uav)
     if (is_started_here(computer_of(condition, uav))) return require_cores(scenario, condition);
 }

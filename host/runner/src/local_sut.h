@@ -39,11 +39,13 @@ std::vector<std::filesystem::path> sut_programs(const scenario::Scenario& scenar
                                                 const scenario::Condition& condition,
                                                 bool by_user = false);
 
-/// The shipped program says itself whether it understands its options and its mission. Of others'
-/// programs nothing is known. @throws Error(kBadFile) at the scenario's file, about the UAV.
-/// @pre sut_programs does not throw.
-void require_sut_arguments(const scenario::Scenario& scenario,
-                           const scenario::Condition& condition);
+/// Asks the programs: an emulator whether it has the target's CPU model, and the shipped program
+/// whether it understands its options and its mission; other programs are not asked. Takes some
+/// tens of milliseconds for each SUT, so once before several trials. `by_user` as above.
+/// @throws Error(kBadFile) at the target's file, about `cpu_model`; at the scenario's, about the
+/// UAV. @pre sut_programs does not throw.
+void try_suts(const scenario::Scenario& scenario, const scenario::Condition& condition,
+              bool by_user = false);
 
 /// Checks that the SUTs can run here. `by_user` as above. @throws Error(kBadFile) as sut_programs;
 /// at the target's file, about `cores`, if this machine has too few.

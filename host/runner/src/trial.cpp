@@ -13,13 +13,13 @@
 #include <new>
 #include <vector>
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <tether/audit/audit.h>
 #include <tether/base/error.h>
 #include <tether/base/version.h>
 #include <tether/board/board.h>
+#include <tether/os/clock.h>
 #include <tether/os/machine.h>
 #include <tether/os/program.h>
 #include <tether/os/text_file.h>
@@ -208,12 +208,6 @@ void keep(const TrialSpec& spec, const TrialFolder& folder, campaign::TrialResul
               fmt::format("{}; the run ended with: {}", e.what(), result.reason));
 }
 
-std::string utc_now() {
-  return fmt::format(
-      "{:%Y-%m-%dT%H:%M:%SZ}",
-      fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
-}
-
 sim::World load_world(const TrialSpec& spec, const BackEnd& back_end, WarningLog& warnings) {
   std::vector<Warning> of_files;
   sim::WorldStore none;
@@ -270,10 +264,11 @@ campaign::TrialResult run_trial(const TrialSpec& spec, const FindBackEnd& find_b
   const campaign::StepReport step{world.step, world.step_from};
   const SimulatorSetup setup = simulator_setup(spec, world, observer, warnings, stop);
   require_sut_programs(spec.scenario, spec.condition, spec.waits_for_sut);
+  if (!spec.was_tried) try_suts(spec.scenario, spec.condition, spec.waits_for_sut);
   const StartSimulator start = prepare(back_end, std::move(world), warnings.sink());
   TrialFolder folder(spec.folder, spec.earlier);
 
-  const std::string started_at = utc_now();
+  const std::string started_at = os::utc_now();
   campaign::TrialResult result;
   try {
     result = fly(spec, start, setup, inputs, observer, warnings, stop);

@@ -45,6 +45,7 @@ struct TrialSpec {
   /// The user starts the SUT. Otherwise the command of the scenario is started on the target.
   bool waits_for_sut = false;
   sim::WorldStore* worlds = nullptr;  ///< that are in memory; null: none
+  bool was_tried = false;  ///< before: by a campaign, that its SUTs understand what they are given
 
   /// Of that UAV's SUT.
   SutPlace sut_place(std::size_t uav) const;
