@@ -14,17 +14,17 @@ std::string why_not_comparable(const Target& target, const Condition& condition)
   if (target.ssh)
     return "is a board without a factor. Calibrate it (tether-sut calibrate --write-target), and "
            "give that file.";
-  if (condition.computers.front().clock.kind == computer::ClockKind::kScripted)
+  if (computer_of(condition, 0).clock.kind == computer::ClockKind::kScripted)
     return fmt::format("cannot be compared with condition \"{}\", whose time is scripted.",
                        condition.name);
   if ((target.clock.kind == computer::ClockKind::kCounted) !=
-      (condition.computers.front().clock.kind == computer::ClockKind::kCounted))
+      (computer_of(condition, 0).clock.kind == computer::ClockKind::kCounted))
     return fmt::format(
         "cannot be compared with condition \"{}\": one has counted costs, the other "
         "a factor. Use a condition with the clock \"{}\".",
         condition.name, target.clock.kind == computer::ClockKind::kCounted ? "counted" : "cpu");
   if (target.clock.kind != computer::ClockKind::kCounted) return "";
-  const os::Emulator& own = *condition.computers.front().target->emulator;
+  const os::Emulator& own = *computer_of(condition, 0).target->emulator;
   if (own.program != target.emulator->program || own.cpu_model != target.emulator->cpu_model)
     return fmt::format(
         "cannot be compared with condition \"{}\", which counts with another "
@@ -52,13 +52,13 @@ Slowness slowness(const Target& target, const Condition& condition) {
   };
   require(why_not_comparable(target, condition));
   if (target.clock.kind != computer::ClockKind::kCounted) {
-    const double own = condition.computers.front().clock.factor;
+    const double own = computer_of(condition, 0).clock.factor;
     Slowness result{.factor = target.clock.factor / own};
     if (const auto& bounds = target.cpu_factor_interval)
       result.bounds = {bounds->first / own, bounds->second / own};
     return result;
   }
-  return by_costs(*target.emulator, *condition.computers.front().target->emulator);
+  return by_costs(*target.emulator, *computer_of(condition, 0).target->emulator);
 }
 
 }  // namespace tether::scenario
