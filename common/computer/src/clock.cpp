@@ -1,8 +1,6 @@
-#include <cstddef>
 #include <iomanip>
 #include <iterator>
 #include <locale>
-#include <optional>
 #include <sstream>
 
 #include <tether/computer/clock.h>
@@ -70,10 +68,10 @@ std::string_view name(ClockKind kind) {
   return traits(kind).name;
 }
 
-ClockKind clock_kind(std::string_view name) {
-  std::size_t kind = 0;
-  while (kind < kClockKinds && kTraits[kind].name != name) ++kind;
-  return static_cast<ClockKind>(kind);
+std::optional<ClockKind> clock_kind(std::string_view name) {
+  for (std::size_t kind = 0; kind < kClockKinds; ++kind)
+    if (kTraits[kind].name == name) return static_cast<ClockKind>(kind);
+  return std::nullopt;
 }
 
 std::string Clock::text() const {
@@ -102,22 +100,28 @@ bool Clock::needs_barrier() const {
   return traits(kind).needs_barrier || (kind == ClockKind::kWall && is_scaled());
 }
 
-Result<Clock> parse_clock(const std::string& text) {
+namespace {
+
+/// None: not a clock.
+std::optional<Clock> clock_of(const std::string& text) {
   const std::size_t star = text.find('*');
-  const ClockKind kind = clock_kind(text.substr(0, star));
-  const Rate rate = traits(kind).rate;
-  Clock clock{.kind = kind};
-  bool is_good = static_cast<std::size_t>(kind) < kClockKinds;
-  if (star == std::string::npos) {
-    is_good = is_good && rate != Rate::kComputing_ms;
-  } else {
-    const auto value = parse_rate(text.substr(star + 1));
-    is_good = is_good && rate != Rate::kNone && value;
-    if (is_good && rate == Rate::kFactor) clock.factor = *value;
-    if (is_good && rate == Rate::kComputing_ms)
-      clock.computing = duration_from_seconds(*value * 1e-3);
-  }
-  if (is_good) return clock;
+  const auto kind = clock_kind(text.substr(0, star));
+  if (!kind) return std::nullopt;
+  Clock clock{.kind = *kind};
+  const Rate rate = traits(*kind).rate;
+  if (star == std::string::npos)
+    return rate == Rate::kComputing_ms ? std::nullopt : std::optional(clock);
+  const auto value = parse_rate(text.substr(star + 1));
+  if (rate == Rate::kNone || !value) return std::nullopt;
+  if (rate == Rate::kFactor) clock.factor = *value;
+  if (rate == Rate::kComputing_ms) clock.computing = duration_from_seconds(*value * 1e-3);
+  return clock;
+}
+
+}  // namespace
+
+Result<Clock> parse_clock(const std::string& text) {
+  if (const auto clock = clock_of(text)) return *clock;
   return Failure{
       Failure::Kind::kInvalid,
       "'" + text +

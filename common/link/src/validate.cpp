@@ -109,8 +109,9 @@ void check(Checker& c, const Hello& hello) {
   c.text(hello.token, kMaxNameBytes, "token");
   c.require(static_cast<std::size_t>(hello.clock.kind) < computer::kClockKinds, "clock",
             "is unknown");
-  c.require(hello.clock.factor >= 1e-6 && hello.clock.factor <= 1e6, "cpu_factor",
-            "is not within 1e-6..1e6");
+  c.require(
+      hello.clock.factor >= computer::kLeastRate && hello.clock.factor <= computer::kLargestRate,
+      "cpu_factor", "is not within 1e-6..1e6");
   c.require(hello.clock.computing >= Duration(0), "computing", "is negative");
   c.text(hello.build_id, kMaxBuildIdBytes, "build_id");
   c.require(hello.build_id.find_first_not_of("0123456789abcdef") == std::string::npos, "build_id",

@@ -104,7 +104,7 @@ TEST(Audit, EtGrowsNoFasterThanTheHostsClockAllows) {
                           {"cpu", many_cores + kNs, kSecond, 2},
                           {"scripted", 2 * kSecond, kSecond, 0}}) {
     Record record = wall_clocked(c.grown, c.elapsed);
-    record.header.suts[0].clock.kind = computer::clock_kind(c.clock);
+    record.header.suts[0].clock.kind = *computer::clock_kind(c.clock);
     record.header.suts[0].cores = c.cores;
     record.header.suts[0].clock.factor = c.factor;
     EXPECT_EQ(growth_findings(record), c.findings) << c.clock << " " << c.grown.count();

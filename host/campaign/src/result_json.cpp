@@ -220,8 +220,9 @@ std::string read_details(const JsonReader& json) {
 }
 
 computer::Clock read_clock(const JsonReader& json) {
-  computer::Clock clock{computer::clock_kind(json.text("clock")), json.number("cpu_factor")};
-  if (computer::name(clock.kind) != json.text("clock")) json.fail("clock", "is unknown");
+  const auto kind = computer::clock_kind(json.text("clock"));
+  if (!kind) json.fail("clock", "is unknown");
+  computer::Clock clock{*kind, json.number("cpu_factor")};
   if (json.has("computing_s")) clock.computing = json.seconds("computing_s");
   return clock;
 }

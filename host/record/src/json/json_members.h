@@ -117,9 +117,9 @@ class MemberReader {
     value = unsigned_member(object_, name);
   }
   void operator()(const char* name, computer::ClockKind& kind) const {
-    kind = computer::clock_kind(text_member(object_, name));
-    if (kind == computer::ClockKind{computer::kClockKinds})
-      throw Damage("member", name, "is not the name of a clock");
+    const auto named = computer::clock_kind(text_member(object_, name));
+    if (!named) throw Damage("member", name, "is not the name of a clock");
+    kind = *named;
   }
   template <Time Value>
   void operator()(const char* name, Value& value) const {

@@ -1,3 +1,4 @@
+#include "tables/read_clock.h"
 #include "tables/read_power.h"
 
 #include <array>
@@ -12,8 +13,6 @@
 namespace tether::scenario {
 namespace {
 
-constexpr computer::ClockKind kClocks[] = {computer::ClockKind::kWall, computer::ClockKind::kCpu,
-                                           computer::ClockKind::kCounted};
 constexpr std::array<std::string_view, 2> kEmulators = {"qemu-aarch64", "qemu-x86_64"};
 constexpr std::int64_t kMostCores = 4096;
 
@@ -128,11 +127,10 @@ Target load_target(const std::filesystem::path& file) {
   }
   target.description = root.text_or("description", "");
   target.ssh = read_address(root);
-  if (root.has("clock")) {
-    std::vector<std::string_view> names;
-    for (const computer::ClockKind kind : kClocks) names.push_back(computer::name(kind));
-    target.clock.kind = kClocks[root.choice("clock", names)];
-  }
+  if (root.has("clock"))
+    target.clock.kind = read_clock_kind(
+        root,
+        {computer::ClockKind::kWall, computer::ClockKind::kCpu, computer::ClockKind::kCounted});
   if (target.ssh) reject_keys_of_virtual_targets(root, target);
   target.clock.factor = root.number_or("cpu_factor", kFactor, 1.0);
   if (root.has("cpu_factor_interval")) read_interval(root, kFactor, target);

@@ -26,7 +26,7 @@ std::string why_not(const ReplaySource& source, UnknownStages unknown) {
 
 std::optional<ReplaySource> read_replay(const toml::Table& table, const Condition& condition,
                                         Scenario& scenario) {
-  if (condition.computers.front().clock.kind != computer::ClockKind::kReplayed) {
+  if (computer_of(condition, 0).clock.kind != computer::ClockKind::kReplayed) {
     for (const std::string_view key : kReplayKeys)
       if (table.has(key)) table.fail(key, "needs clock = \"replayed\".");
     return std::nullopt;

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -26,8 +28,8 @@ inline constexpr std::size_t kClockKinds = 6;
 /// As users write it: "wall", "cpu", "scripted", "unstamped", "counted", "replayed"; of another
 /// value "unknown".
 std::string_view name(ClockKind kind);
-/// The inverse; kClockKinds as a value, which has no name, for other texts.
-ClockKind clock_kind(std::string_view name);
+/// The inverse; none for other texts.
+std::optional<ClockKind> clock_kind(std::string_view name);
 
 /// A clock with its rate.
 struct Clock {
