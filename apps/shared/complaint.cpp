@@ -39,7 +39,8 @@ std::string commands_with(const CLI::App& program, const std::string& option) {
 }
 
 /// First a word that is neither a command, an option nor an argument, with the nearest one that is.
-std::string what_is_wrong(const CLI::App& command, const CLI::ParseError& error) {
+std::string what_is_wrong(const CLI::App& command, const CLI::ParseError& error,
+                          const std::function<std::string(const std::string&)>& advice) {
   const std::vector<std::string> rest = command.remaining();
   const auto subcommands = command.get_subcommands([](const CLI::App*) { return true; });
   std::vector<std::string> known;
@@ -62,18 +63,21 @@ std::string what_is_wrong(const CLI::App& command, const CLI::ParseError& error)
       return "unknown option '" + given + "'; did you mean '" + option + "'?";
   if (const std::string others = commands_with(program_of(command), given); !others.empty())
     return "'" + given + "' is an option of " + others + ", not of this command.";
+  const std::string help = advice ? advice(given) : "";
   return std::string("unexpected ") +
          (rest.front().starts_with('-') ? "option"
           : subcommands.empty()         ? "argument"
                                         : "command") +
-         " '" + rest.front() + "'.";
+         " '" + rest.front() + "'." + (help.empty() ? "" : " " + help);
 }
 
 }  // namespace
 
-std::string complaint(const CLI::App& program, const CLI::ParseError& error) {
+std::string complaint(const CLI::App& program, const CLI::ParseError& error,
+                      const std::function<std::string(const std::string&)>& advice) {
   const CLI::App& command = innermost(program);
-  return what_is_wrong(command, error) + " For help, type: " + command_words(command) + " --help";
+  return what_is_wrong(command, error, advice) + " For help, type: " + command_words(command) +
+         " --help";
 }
 
 }  // namespace tether::app

@@ -1,4 +1,5 @@
 #include "commands/commands.h"
+#include "reading/file_kind.h"
 #include "terminal/print.h"
 
 #include <algorithm>
@@ -14,6 +15,8 @@
 #include <tether/board/bandwidth_probe.h>
 #include <tether/board/target_probe.h>
 #include <tether/board/target_readings.h>
+#include <tether/os/program.h>
+#include <tether/scenario/shipped_files.h>
 #include <tether/scenario/target.h>
 
 namespace tether::app {
@@ -106,6 +109,14 @@ std::string to_json(const Check& check) {
 }  // namespace
 
 int check_target(const CheckOptions& options, const std::stop_token& stop) {
+  const auto shipped = scenario::ShippedFiles::of_program(os::own_file());
+  if (shipped.has(scenario::ShippedKind::kTarget, options.address) ||
+      kind_of(options.address) == FileKind::kTarget)
+    throw Error(ErrorCode::kUsage,
+                fmt::format("\"{}\" describes a virtual target, which runs on this machine. To "
+                            "check this machine, type: tether target check",
+                            options.address))
+        .about(options.address);
   const Check check = options.address.empty()
                           ? check_here()
                           : check_board(scenario::parse_ssh_address(options.address), stop);

@@ -22,7 +22,9 @@
 
 #include <tether/base/error.h>
 #include <tether/base/version.h>
+#include <tether/os/program.h>
 #include <tether/os/terminal.h>
+#include <tether/scenario/shipped_files.h>
 
 // The options of all commands, with their help texts. Of this program, only this source includes
 // CLI11, which is expensive to compile. docs/man/tether.1 describes the same options.
@@ -444,6 +446,15 @@ Examples:
   tether target check ssh://pi@board.local)");
 }
 
+/// What to do about a word that no command takes here.
+std::string advice_on(const std::string& word) {
+  for (const char* option : {"--trials", "--flights", "--seeds"})
+    if (word == option)
+      return "The number of flights is `trials` of a campaign's file, and --max-trials of tether "
+             "size.";
+  return scenario::ShippedFiles::of_program(os::own_file()).what_is(word);
+}
+
 }  // namespace
 
 RunOptions parse_run(std::vector<std::string> arguments) {
@@ -482,7 +493,7 @@ int run_command_line(int argc, char** argv, std::optional<os::Interrupt>& interr
     program.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return program.exit(e);  // --help, --version
-    complain("tether: " + complaint(program, e));
+    complain("tether: " + complaint(program, e, advice_on));
     return exit_code(ErrorCode::kUsage);
   }
   interrupt.emplace();

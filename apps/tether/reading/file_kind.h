@@ -22,8 +22,8 @@ enum class FileKind {
 /// By its content; none if it is none of them, cannot be read, or could be several.
 std::optional<FileKind> kind_of(const std::filesystem::path& path);
 
-/// Checks that a file is not of another kind than the command needs. One that is not recognised may
-/// be of that kind, and the command says what is wrong with it.
+/// Checks that a file is not of another kind than the command needs, and that a record exists. A
+/// file that is not recognised may be of that kind, and the command says what is wrong with it.
 /// @throws Error(kUsage), about the path, that says what it is and which command takes it.
 void require_kind(const std::filesystem::path& path, FileKind wanted);
 

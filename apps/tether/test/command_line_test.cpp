@@ -31,6 +31,8 @@ TEST(CommandLine, NamesWhatIsWrongInOneLineWithTheHelpOfItsCommand) {
   const std::pair<std::vector<std::string>, std::pair<std::string, std::string>> cases[] = {
       {{"tether"}, {"command", "tether --help"}},
       {{"tether", "whatever"}, {"command 'whatever'", "tether --help"}},
+      {{"tether", "face_anchor"}, {"type: tether run face_anchor", "tether --help"}},
+      {{"tether", "campaign", "x", "--trials", "9"}, {"`trials`", "tether campaign --help"}},
       {{"tether", "run"}, {"scenario", "tether run --help"}},
       {{"tether", "run", "x", "y"}, {"argument 'y'", "tether run --help"}},
       {{"tether", "world", "check"}, {"world", "tether world check --help"}},

@@ -54,6 +54,7 @@ std::string describe(const ::toml::node& node) {
   }
 }
 
+constexpr std::size_t kLargestFile = std::size_t{1} << 20;
 constexpr std::string_view kArrayOfStrings = "an array of strings";
 
 bool is_identifier(std::string_view text) {
@@ -406,7 +407,6 @@ void Document::Delete::operator()(Node* node) const {
 }
 
 Document Document::load(const std::filesystem::path& file) {
-  constexpr std::size_t kLargestFile = std::size_t{1} << 20;
   return parse(os::read_file(file, kLargestFile), file.string());
 }
 
@@ -425,6 +425,17 @@ Document Document::parse(std::string_view text, const std::string& file) {
 }
 
 namespace {
+
+/// Adds the lines at which the tree has the key.
+void add_lines(const ::toml::node& node, std::string_view key, std::vector<int>& lines) {
+  if (const ::toml::array* array = node.as_array())
+    for (const ::toml::node& element : *array) add_lines(element, key, lines);
+  if (const ::toml::table* table = node.as_table())
+    for (const auto& [name, value] : *table) {
+      if (name.str() == key) lines.push_back(line_of(name.source()));
+      add_lines(value, key, lines);
+    }
+}
 
 bool is_list_of_values(const ::toml::node& node) {
   const ::toml::array* array = node.as_array();
@@ -495,6 +506,14 @@ Table Document::root(Keys allowed) const {
   Table any = root();
   any.require_keys_in({allowed.begin(), allowed.size()});
   return any;
+}
+
+FileLocation place_of(const std::filesystem::path& file, std::string_view key) try {
+  std::vector<int> lines;
+  add_lines(::toml::parse(os::read_file(file, kLargestFile)), key, lines);
+  return {file.string(), lines.size() == 1 ? lines.front() : 0};
+} catch (const std::exception&) {  // its reader says why
+  return {file.string()};
 }
 
 }  // namespace tether::toml

@@ -242,6 +242,15 @@ TEST(Document, PlacesMistakesInAReplacedValueAtItsKey) {
   EXPECT_EQ(error.subject(), "b");
 }
 
+TEST(PlaceOf, IsTheLineOfAKeyThatTheFileHasOnce) {
+  const ScratchFolder scratch;
+  const auto file = scratch.write("f.toml", "a = 1\n[[t]]\nb = 2\nc = 3\n[[t]]\nc = 4\n");
+  EXPECT_EQ(place_of(file, "b"), (FileLocation{file.string(), 3}));
+  EXPECT_EQ(place_of(file, "c"), FileLocation{file.string()});
+  EXPECT_EQ(place_of(file, "d"), FileLocation{file.string()});
+  EXPECT_EQ(place_of("/gone", "a"), FileLocation{"/gone"});
+}
+
 TEST(ResultOf, IsAValueOrTheFailureOfWhatWasThrown) {
   const auto number = [](const std::string& text) {
     return result_of([&] { return Document::parse(text, "f.toml").root().number("k", {}); });

@@ -39,6 +39,10 @@ const Place& place_of(ShippedKind kind) {
   return kPlaces.at(static_cast<std::size_t>(kind));
 }
 
+std::string how_to_use(const Place& place, const std::string& name) {
+  return place.use == nullptr ? "" : fmt::format(" To use it, type: {} {}.", place.use, name);
+}
+
 /// The text up to its first full stop or colon, on one line.
 std::string first_sentence(const std::string& comment) {
   std::string text;
@@ -132,7 +136,7 @@ std::string ShippedFiles::why_none(ShippedKind kind, const std::string& given,
     if (!has(static_cast<ShippedKind>(i), given)) continue;
     const Place& other = kPlaces[i];
     return fmt::format("'{}' is a shipped {}, not a {}.", given, other.name, place.name) +
-           (other.use == nullptr ? "" : fmt::format(" To use it, type: {} {}", other.use, given));
+           how_to_use(other, given);
   }
   const std::string file = given + place.extension;
   std::error_code ignored;
@@ -147,9 +151,18 @@ std::string ShippedFiles::why_none(ShippedKind kind, const std::string& given,
   const std::string_view near = nearest(given, names);
   return fmt::format(
       "'{}' is neither a file nor a shipped {}{} `tether list` lists the shipped "
-      "files, which are in {}.",
+      "files, which are in {}.{}",
       given, place.name, near.empty() ? "." : fmt::format("; did you mean '{}'?", near),
-      data_.string());
+      data_.string(),
+      kind == ShippedKind::kTarget ? fmt::format(" A board is ssh://[user@]{}.", given) : "");
+}
+
+std::string ShippedFiles::what_is(const std::string& name) const {
+  for (std::size_t i = 0; i < kPlaces.size(); ++i)
+    if (has(static_cast<ShippedKind>(i), name))
+      return fmt::format("'{}' is a shipped {}.", name, kPlaces[i].name) +
+             how_to_use(kPlaces[i], name);
+  return "";
 }
 
 std::optional<fs::path> ShippedFiles::named(ShippedKind kind, const std::string& given,

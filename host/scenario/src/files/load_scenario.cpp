@@ -306,10 +306,9 @@ void read_record(const toml::Table& root, Scenario& scenario) {
   const toml::Table record =
       root.table("record", {"ground_truth_period_ms", "images", "image_period_ms"});
   constexpr toml::Range kImagePeriod_ms{.min = 0.0, .max = 1e6};
-  const toml::Range period_ms{.min = 1e3 * to_seconds(scenario.step.value_or(sim::kLeastStep)),
-                              .max = 1e6};
+  constexpr toml::Range kPeriod_ms{.min = 1e3 * to_seconds(sim::kLeastStep), .max = 1e6};
   scenario.ground_truth_period =
-      record.duration_or("ground_truth_period_ms", period_ms, scenario.ground_truth_period);
+      record.duration_or("ground_truth_period_ms", kPeriod_ms, scenario.ground_truth_period);
   if (record.has("ground_truth_period_ms"))
     scenario.ground_truth_at = record.where("ground_truth_period_ms");
   scenario.record_images = record.boolean_or("images", scenario.record_images);

@@ -360,7 +360,7 @@ TEST_F(LoadScenario, RefusesWrongMetricsAndNumbers) {
        {limit, "threshold_m_s = 1", 85, "threshold_m_s"},
        {"hang_limit_s", "max_contact_speed_m_s = -1\nhang_limit_s", 6, "max_contact_speed_m_s"},
        {"position_m = [1, -2.5, 1.2]", "position_m = [1, 2]", 12, "position_m"},
-       {"_period_ms = 20", "_period_ms = 1", 102, "ground_truth_period_ms"}});
+       {"_period_ms = 20", "_period_ms = 0", 102, "ground_truth_period_ms"}});
 }
 
 TEST_F(LoadScenario, LocatesErrorsInFilesThatItNames) {

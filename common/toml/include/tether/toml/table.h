@@ -160,6 +160,10 @@ class Document {
   std::string file_;
 };
 
+/// The line of the key, in whichever table the file has it. No line if it is there several times,
+/// or the file cannot be read.
+FileLocation place_of(const std::filesystem::path& file, std::string_view key);
+
 /// For the target's side, which does not throw: the value that `read` returns, or kInvalid with the
 /// message of the Error that it throws.
 template <class Read>

@@ -49,6 +49,7 @@ class ShippedFiles {
   /// @throws Error(kBadFile) if a file cannot be read.
   std::vector<ShippedFile> list(ShippedKind kind) const;
 
+  bool has(ShippedKind kind, const std::string& name) const;
   /// The file of that name; it need not exist.
   std::filesystem::path file_of(ShippedKind kind, const std::string& name) const;
 
@@ -62,8 +63,11 @@ class ShippedFiles {
   /// The same for a command line, of which paths are returned as they are.
   std::filesystem::path find(ShippedKind kind, const std::string& given) const;
 
+  /// "'room' is a shipped world. To use it, type: tether world check room."; empty: no file that is
+  /// shipped has the name.
+  std::string what_is(const std::string& name) const;
+
  private:
-  bool has(ShippedKind kind, const std::string& name) const;
   std::string why_none(ShippedKind kind, const std::string& given,
                        const std::filesystem::path& folder) const;
 
