@@ -14,6 +14,7 @@
 #include <tether/os/program.h>
 #include <tether/os/temporary_folder.h>
 #include <tether/os/text_file.h>
+#include <tether/runner/trial_request.h>
 #include <tether/runner/trial_server.h>
 #include <tether/stats/sample_statistics.h>
 #include <tether/toml/table.h>
@@ -69,10 +70,13 @@ double measure_step_ms(const fs::path& scratch, const std::stop_token& stop) {
 }
 
 workers::Flight fly(runner::TrialServers& servers, const workers::Item& item, const fs::path& local,
-                    const std::string& node, const std::stop_token& stop) {
+                    double cpu_time_scale, const std::string& node, const std::stop_token& stop) {
   using End = workers::Flight::End;
   try {
-    auto result = servers.run(item.arguments, local, stop);
+    runner::TrialRequest request = runner::parse_trial_request(item.request);
+    request.folder = local;
+    if (cpu_time_scale != 1.0) request.cpu_time_scale = cpu_time_scale;
+    auto result = servers.run(request, stop);
     if (!result)
       return {End::kStopped, "the worker was ended (cancelled, preempted, or over its time limit)"};
     if (result->end == campaign::kEndSetupFailed) return {End::kLost, result->reason};
@@ -106,14 +110,15 @@ int work(const WorkerOptions& options, const std::stop_token& stop) {
   runner::TrialServers servers;
   const workers::WorkerName self = own_name();
   const workers::WorkerEnd end = workers::work(
-      *round,
-      {.self = self,
-       .scratch = scratch.path(),
-       .fly = [&](const workers::Item& item,
-                  const fs::path& local) { return fly(servers, item, local, self.node, stop); },
-       .check = [&] { workers::require_same_files(files); },
-       .measure_ms = [&] { return measure_step_ms(scratch.path(), stop); },
-       .stop = stop});
+      *round, {.self = self,
+               .scratch = scratch.path(),
+               .fly =
+                   [&](const workers::Item& item, const fs::path& local, double cpu_time_scale) {
+                     return fly(servers, item, local, cpu_time_scale, self.node, stop);
+                   },
+               .check = [&] { workers::require_same_files(files); },
+               .measure_ms = [&] { return measure_step_ms(scratch.path(), stop); },
+               .stop = stop});
   fmt::print("{} flown, {} lost\n", end.flown, end.lost);
   if (end.why_early.empty()) return 0;
   say("tether: {}\n", end.why_early);

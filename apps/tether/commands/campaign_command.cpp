@@ -136,9 +136,10 @@ int run_trials(const CampaignOptions& given, const std::stop_token& stop) {
       options.out.empty() ? std::filesystem::path("out/campaigns") / campaign.name : options.out;
   std::optional<workers::Cluster> cluster;
   if (options.cluster.uses_workers())
-    cluster.emplace(workers::Start{options.cluster, jobs, std::filesystem::current_path(),
-                                   command_of(options, campaign)},
-                    out, runner::trial_arguments);
+    cluster.emplace(
+        workers::Start{options.cluster, jobs, std::filesystem::current_path(),
+                       command_of(options, campaign)},
+        out, [](const campaign::TrialPlan& one) { return to_json(runner::request_of(one)); });
   sim::WorldStore worlds;
   const auto [files, warnings] = runner::files_of_trials(campaign, find_back_end, worlds);
   if (!warnings.empty())

@@ -9,11 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include <tether/runner/trial_request.h>
 #include <tether/workers/cluster.h>
-
-namespace tether::sim {
-class WorldStore;
-}
 
 /// The subcommands of `tether`, one file each; command_line.cpp parses their options. Each returns
 /// the exit code of the program. The long ones end early after a stop request.
@@ -26,32 +23,18 @@ struct ReadingOptions {
 };
 
 struct RunOptions {
+  runner::TrialRequest request;  ///< but for what the following members name
   std::filesystem::path scenario;
-  std::string condition;
   std::string target;
-  std::string simulator;
   std::filesystem::path profile;
-  std::uint64_t seed = 1;
-  std::filesystem::path out;
-  std::string listen;
-  double real_time_factor = 0.0;
-  std::optional<double> slowdown;
-  std::optional<double> cpu_time_scale;
   std::vector<std::string> settings;  ///< "KEY=VALUE"
-  std::string unknown_stages;
   ReadingOptions reading;
-  bool tunnel = false;
-  bool record_images = false;
   bool json = false;
   bool quiet = false;
-  bool force = false;
   std::filesystem::path junit;
-  sim::WorldStore* worlds = nullptr;  ///< that are in memory; null: none
 };
 /// Runs one trial and prints its result.
 int run_one(const RunOptions& options, const std::stop_token& stop);
-/// Reads the world of such a trial into `worlds`. @throws as run_one.
-void read_world_ahead(const RunOptions& options, sim::WorldStore& worlds);
 
 struct CampaignOptions {
   std::filesystem::path campaign;

@@ -103,7 +103,7 @@ Plan make_plan(const SizeOptions& options) {
   plan.report.most_flights = options.max_trials;
   const auto shipped = scenario::ShippedFiles::of_program(os::own_file());
   scenario::Scenario scenario = load_sized_scenario(options);
-  const scenario::Condition own = pick_condition(scenario, options.condition);
+  const scenario::Condition own = scenario::pick_condition(scenario, options.condition);
   if (computer_of(own, 0).clock.factor * plan.report.question.most > kLargestFactor)
     refuse_option("--between",
                   fmt::format("{} times the factor of condition \"{}\" is more than {}.",
@@ -114,7 +114,7 @@ Plan make_plan(const SizeOptions& options) {
   plan.report.description = scenario.description;
   plan.flights.conditions = {own};
   if (!options.unsynchronised.empty()) {
-    plan.flights.conditions.push_back(pick_condition(scenario, options.unsynchronised));
+    plan.flights.conditions.push_back(scenario::pick_condition(scenario, options.unsynchronised));
     require_comparable(own, plan.flights.conditions.back());
   }
   plan.flights.scenario = std::move(scenario);

@@ -82,7 +82,8 @@ SizeTrials::SizeTrials(const SizeOptions& options, scenario::Campaign campaign,
           options.cluster.uses_workers()
               ? std::make_unique<workers::Cluster>(
                     workers::Start{options.cluster, jobs_, std::filesystem::current_path(), {}},
-                    out, runner::trial_arguments)
+                    out,
+                    [](const campaign::TrialPlan& one) { return to_json(runner::request_of(one)); })
               : nullptr),
       settings_([&] {
         campaign::Settings versions = versions_of(campaign_, options.reading);

@@ -126,7 +126,7 @@ std::string name_of(const campaign::TrialPlan& plan) {
 int find_uavs(const SizeOptions& options, const std::stop_token& stop) {
   require_for_uavs(options);
   const scenario::Scenario all = load(options, std::nullopt);
-  const scenario::Condition condition = pick_condition(all, options.condition);
+  const scenario::Condition condition = scenario::pick_condition(all, options.condition);
   require_shared_board(condition, all.name);
   const scenario::Computer& board = condition.computers[condition.seats.front().computer];
   report::UavsReport report{.scenario = all.name,

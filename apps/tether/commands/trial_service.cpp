@@ -1,34 +1,46 @@
 #include "commands/trial_service.h"
 
-#include "commands/commands.h"
-#include "options/command_line.h"
+#include "back_ends.h"
 #include "terminal/errors_printed.h"
+#include "terminal/print.h"
 
 #include <exception>
 #include <optional>
 #include <string>
-#include <vector>
 
+#include <tether/campaign/result.h>
 #include <tether/os/interrupt.h>
+#include <tether/runner/trial.h>
+#include <tether/runner/trial_request.h>
+#include <tether/sim_sdf/world_store.h>
 
 namespace tether::app {
 
 runner::TrialService trial_service(sim::WorldStore& worlds) {
   return {.prepare =
-              [&worlds](const std::vector<std::string>& arguments) {
+              [&worlds](const runner::TrialRequest& request) {
                 try {
-                  read_world_ahead(parse_run(arguments), worlds);
+                  const runner::TrialSpec spec = runner::make_trial(request);
+                  worlds.load(scenario::world_request(spec.scenario, spec.seed), nullptr);
                 } catch (const std::exception&) {  // the trial meets and prints the same one
                 }
               },
           .run =
-              [&worlds](const std::vector<std::string>& arguments) {
-                std::optional<os::Interrupt> interrupt;
+              [&worlds](const runner::TrialRequest& request) {
                 return with_errors_printed([&] {
-                  RunOptions options = parse_run(arguments);
-                  options.worlds = &worlds;
-                  interrupt.emplace();
-                  return run_one(options, interrupt->token());
+                  runner::TrialSpec spec = runner::make_trial(request);
+                  spec.worlds = &worlds;
+                  spec.was_tried = true;
+                  const os::Interrupt interrupt;
+                  runner::TrialObserver observer;
+                  observer.on_refused = [](const std::string& text) {
+                    complain("warning: " + text);
+                  };
+                  const campaign::TrialResult result =
+                      runner::run_trial(spec, find_back_end, observer, interrupt.token());
+                  if (result.outcome == campaign::Outcome::kFailed)
+                    complain("tether: " + result.reason);
+                  return campaign::exit_code(result.outcome);
                 });
               }};
 }

@@ -105,43 +105,43 @@ void add_cluster_options(CLI::App& command, workers::ClusterOptions& cluster) {
                    "nodes of another speed than the first are rejected");
 }
 
-std::shared_ptr<RunOptions> add_run_command(CLI::App& program, Action& action) {
+void add_run_command(CLI::App& program, Action& action) {
   const auto [command, options] =
       add_command(program, action, "run", "Run one trial of a scenario", run_one);
   command->add_option("scenario", options->scenario, "Name of a shipped scenario, or a file (TOML)")
       ->required();
-  command->add_option("--condition", options->condition,
+  command->add_option("--condition", options->request.condition,
                       "Condition of the scenario [its first one]");
   command->add_option("--profile", options->profile,
                       "Sensor profile that overrides the scenario's settings: name of a shipped "
                       "profile, or a file (TOML)");
-  command->add_option("--seed", options->seed, "Seed of noise, delays and start poses")
+  command->add_option("--seed", options->request.seed, "Seed of noise, delays and start poses")
       ->check(within(0.0, 9007199254740992.0))
       ->capture_default_str();
-  command->add_option("--out", options->out,
+  command->add_option("--out", options->request.folder,
                       "Folder for result.json, record.mcap and the SUT's log. A folder with an "
                       "earlier run needs --force [out/SCENARIO/CONDITION/seed-N; replaces the "
                       "earlier run]");
-  command->add_flag("--force", options->force,
+  command->add_flag("--force", options->request.replaces_earlier,
                     "Replace the earlier run in the folder of --out: remove all of its files, "
                     "with its reports, plots and frames");
   command
-      ->add_option("--real-time-factor", options->real_time_factor,
+      ->add_option("--real-time-factor", options->request.real_time_factor,
                    "Maximum speed of the simulation relative to the wall clock")
       ->check(within(1e-3, 1e4))
       ->type_name("FACTOR");
   command
-      ->add_option("--cpu-time-scale", options->cpu_time_scale,
+      ->add_option("--cpu-time-scale", options->request.cpu_time_scale,
                    "With the clock \"cpu\": count CPU time so many times, because this machine is "
                    "that much faster than the one of other runs")
       ->check(within(1e-3, 1e3))
       ->type_name("FACTOR");
   command
-      ->add_option("--slowdown", options->slowdown,
+      ->add_option("--slowdown", options->request.slowdown,
                    "Make the SUT's computer so many times slower than the condition's")
       ->check(within(1e-3, 1e4))
       ->type_name("FACTOR");
-  command->add_option("--unknown-stages", options->unknown_stages,
+  command->add_option("--unknown-stages", options->request.unknown_stages,
                       "With the clock \"replayed\": time of stages that were not recorded, "
                       "instead of the condition's unknown_stages: refused (the run ends), counted "
                       "or zero");
@@ -155,18 +155,18 @@ std::shared_ptr<RunOptions> add_run_command(CLI::App& program, Action& action) {
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command
-      ->add_option("--listen", options->listen,
+      ->add_option("--listen", options->request.listen,
                    "Address for the SUT, host:port; port 0 selects a free port")
       ->capture_default_str();
   command->add_option("--target", options->target,
                       "Where the SUT runs, instead of the condition's target: name of a shipped "
                       "target, a file (TOML), or a board, ssh://[user@]board[:port]; with "
                       "\"wait\", print the command that starts the SUT and wait for it to connect");
-  add_simulator_option(*command, options->simulator);
-  command->add_flag("--tunnel", options->tunnel,
+  add_simulator_option(*command, options->request.simulator);
+  command->add_flag("--tunnel", options->request.uses_tunnel,
                     "Tunnel the SUT's connection through SSH, for a board that cannot reach this "
                     "machine; the board must then decrypt every image");
-  command->add_flag("--images", options->record_images,
+  command->add_flag("--images", options->request.record_images,
                     "Record the camera images that the SUT reads");
   command->add_flag("--json", options->json, "Print result.json instead of a summary");
   add_junit_option(*command, options->junit);
@@ -180,7 +180,6 @@ std::shared_ptr<RunOptions> add_run_command(CLI::App& program, Action& action) {
   tether run face_anchor --profile ideal
   tether run face_anchor --simulator gazebo
   tether run face_anchor --images --out out/one)");
-  return options;
 }
 
 void add_campaign_command(CLI::App& program, Action& action) {
@@ -457,16 +456,6 @@ std::string advice_on(const std::string& word) {
 
 }  // namespace
 
-RunOptions parse_run(std::vector<std::string> arguments) {
-  CLI::App program;
-  Action ignored;
-  const auto options = add_run_command(program, ignored);
-  arguments.emplace_back("run");
-  std::reverse(arguments.begin(), std::prev(arguments.end()));  // CLI11 reads them from the end
-  program.parse(std::move(arguments));
-  return *options;
-}
-
 int run_command_line(int argc, char** argv, std::optional<os::Interrupt>& interrupt) {
   CLI::App program{"Tests in simulation whether a UAV's computer is fast enough for its task."};
   program.name("tether");
@@ -476,11 +465,10 @@ int run_command_line(int argc, char** argv, std::optional<os::Interrupt>& interr
   program.formatter(help_format(os::text_columns(STDOUT_FILENO)));  // of the commands too
 
   Action action;
-  add_run_command(program, action);
   for (const auto add :
-       {add_campaign_command, add_size_command, add_worker_command, add_report_command,
-        add_audit_command, add_timing_command, add_frames_command, add_plot_command,
-        add_world_command, add_target_command, add_list_command})
+       {add_run_command, add_campaign_command, add_size_command, add_worker_command,
+        add_report_command, add_audit_command, add_timing_command, add_frames_command,
+        add_plot_command, add_world_command, add_target_command, add_list_command})
     add(program, action);
   std::string shell;
   add_completion_command(program, shell)->callback([&] {

@@ -1,29 +1,16 @@
 #include "options/trial_options.h"
 
 #include <cstdlib>
-#include <string_view>
-#include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <tether/base/error.h>
-#include <tether/base/suggest.h>
 #include <tether/base/version.h>
 #include <tether/os/machine.h>
 #include <tether/runner/campaign_trials.h>
 
 namespace tether::app {
-
-scenario::Condition pick_condition(const scenario::Scenario& scenario, const std::string& wanted) {
-  if (wanted.empty()) return scenario.conditions.front();
-  if (const auto* condition = scenario.find_condition(wanted)) return *condition;
-  std::vector<std::string_view> names;
-  for (const auto& condition : scenario.conditions) names.push_back(condition.name);
-  throw Error(ErrorCode::kUsage, {scenario.file.string()},
-              fmt::format("has no condition '{}'; {}", wanted, allowed_hint(wanted, names)))
-      .about(wanted);
-}
 
 void require_ports(const scenario::Campaign& campaign, int jobs) {
   const char* master = std::getenv("GAZEBO_MASTER_URI");

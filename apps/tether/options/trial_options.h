@@ -10,10 +10,6 @@
 /// What commands that run trials have in common.
 namespace tether::app {
 
-/// The condition of that name; the scenario's first one if it is empty.
-/// @throws Error(kUsage) about the name, with the nearest one, if there is none.
-scenario::Condition pick_condition(const scenario::Scenario& scenario, const std::string& wanted);
-
 /// Each parallel trial with Gazebo needs a port.
 /// @throws Error(kUsage) about GAZEBO_MASTER_URI if that selects one.
 void require_ports(const scenario::Campaign& campaign, int jobs);

@@ -13,7 +13,6 @@
 #include <tether/os/counted_program.h>
 #include <tether/os/machine.h>
 #include <tether/os/program.h>
-#include <tether/toml/table.h>
 
 namespace tether::runner {
 
@@ -81,7 +80,7 @@ void require_cpu_model(const scenario::Target& target) {
   if (models.empty() || std::ranges::count(models, model) > 0) return;
   const std::vector<std::string_view> known(models.begin(), models.end());
   const std::string_view near = nearest(model, known);
-  throw Error(ErrorCode::kBadFile, toml::place_of(target.file, "cpu_model"),
+  throw Error(ErrorCode::kBadFile, target.where("cpu_model"),
               fmt::format("'cpu_model' is \"{}\", which {} does not have{} `{} -cpu help` lists "
                           "its models",
                           wanted, target.emulator->program,
@@ -95,7 +94,7 @@ void require_cores(const scenario::Scenario& scenario, const scenario::Condition
   if (first_cpu(condition, suts) <= allowed) return;
   for (std::size_t uav = 0; uav < suts; ++uav)
     if (const auto& target = computer_of(condition, uav).target; target && target->cores > 0)
-      throw Error(ErrorCode::kBadFile, toml::place_of(target->file, "cores"),
+      throw Error(ErrorCode::kBadFile, target->where("cores"),
                   fmt::format("'cores' is too large ({} for each of {} SUTs). This process may "
                               "use {} of this machine's",
                               target->cores, suts, allowed))
@@ -153,7 +152,7 @@ std::vector<std::filesystem::path> sut_programs(const scenario::Scenario& scenar
         if (std::find(programs.begin(), programs.end(), program) == programs.end())
           programs.push_back(program);
     } catch (const Error& e) {
-      throw Error(ErrorCode::kBadFile, toml::place_of(scenario.file, "command"),
+      throw Error(ErrorCode::kBadFile, scenario.where("command"),
                   fmt::format("the SUT of UAV \"{}\": {}", uav.placement.name, e.what()))
           .about(uav.placement.name);
     }
@@ -180,7 +179,7 @@ void try_suts(const scenario::Scenario& scenario, const scenario::Condition& con
     command.words.emplace_back("--check");
     const os::Captured checked = os::run_captured(command.words, "", kLimit);
     if (checked.code != kWrongUse) continue;
-    throw Error(ErrorCode::kBadFile, toml::place_of(scenario.file, "command"),
+    throw Error(ErrorCode::kBadFile, scenario.where("command"),
                 fmt::format("the SUT of UAV \"{}\" cannot fly this: {}", name,
                             checked.err.substr(0, checked.err.find('\n'))))
         .about(name);

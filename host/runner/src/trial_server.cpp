@@ -4,7 +4,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -18,9 +17,9 @@
 #include <tether/runner/trial_server.h>
 
 // Campaign and server exchange whole messages through a socket, which is the server's standard
-// input. A request is the trial's log, the name of its process and the arguments of `tether run`,
-// each ended by a zero byte; the reply says how the trial ended. An empty message asks to end the
-// trial that is running. Each side notices by the end of the stream that the other one has ended.
+// input. A message is the trial's log, a zero byte, and its request as JSON; the reply says how the
+// trial ended. "stop" asks to end the trial that is running. Each side notices by the end of the
+// stream that the other one has ended.
 namespace tether::runner {
 
 namespace {
@@ -42,13 +41,6 @@ std::optional<std::string> receive(int socket, Duration limit) {
 
 bool send_message(int socket, std::string_view text) {
   return send(socket, text.data(), text.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(text.size());
-}
-
-std::vector<std::string> words_of(const std::string& request) {
-  std::vector<std::string> words;
-  for (std::size_t at = 0; at < request.size(); at += words.back().size() + 1)
-    words.push_back(request.substr(at, request.find(kEnd, at) - at));
-  return words;
 }
 
 /// The second attempt keeps the log of the first.
@@ -125,40 +117,12 @@ std::unique_ptr<TrialServers::Server> TrialServers::take() {
   return server;
 }
 
-std::vector<std::string> trial_arguments(const campaign::TrialPlan& plan) {
-  const bool is_slowed = !plan.condition->slowed_from.empty();
-  std::vector<std::string> arguments = {
-      plan.scenario->file.string(),
-      "--condition",
-      is_slowed ? plan.condition->slowed_from : plan.condition->name,
-      "--seed",
-      std::to_string(plan.seed),
-      "--simulator",
-      plan.condition->simulator,
-      "--quiet"};
-  if (!plan.profile.empty())
-    arguments.insert(arguments.end(), {"--profile", plan.profile.string()});
-  if (is_slowed)
-    arguments.insert(arguments.end(), {"--slowdown", fmt::format("{}", plan.condition->slowdown)});
-  for (const auto& [key, value] : plan.scenario->settings)
-    arguments.insert(arguments.end(), {"--set", fmt::format("{}={}", key, value)});
-  if (plan.record_images) arguments.emplace_back("--images");
-  const sim::WorldOptions& options = plan.scenario->world_options;
-  if (options.is_tolerant) arguments.emplace_back("--tolerant");
-  if (options.replaces_missing_models)
-    arguments.insert(arguments.end(), {"--missing-models", "placeholder"});
-  return arguments;
-}
-
-std::optional<campaign::TrialResult> TrialServers::run(const std::vector<std::string>& of_run,
-                                                       const std::filesystem::path& folder,
+std::optional<campaign::TrialResult> TrialServers::run(const TrialRequest& request,
                                                        const std::stop_token& stop) {
+  const std::filesystem::path& folder = request.folder;
   const std::filesystem::path log = log_file(folder);
-  std::string request = log.string() + kEnd + folder.filename().string() + kEnd;
-  for (const std::string& argument : of_run) request += argument + kEnd;
-  request += "--out" + std::string(1, kEnd) + folder.string() + kEnd;
   std::unique_ptr<Server> server = take();
-  const std::optional<std::string> end = server->run(request, stop);
+  const std::optional<std::string> end = server->run(log.string() + kEnd + to_json(request), stop);
   const std::string how = end ? *end : "was lost with its server, which " + server->end();
   if (end) {
     const std::lock_guard lock(mutex_);
@@ -173,7 +137,7 @@ std::optional<campaign::TrialResult> TrialServers::run(const std::vector<std::st
 
 campaign::TrialResult TrialServers::run(const campaign::TrialPlan& plan,
                                         const std::stop_token& stop) {
-  if (auto result = run(trial_arguments(plan), plan.folder, stop)) return std::move(*result);
+  if (auto result = run(request_of(plan), stop)) return std::move(*result);
   auto interrupted = campaign::make_setup_failure(*plan.scenario, *plan.condition, plan.seed,
                                                   "interrupted by the user");
   interrupted.end = campaign::kEndInterrupted;
@@ -183,19 +147,21 @@ campaign::TrialResult TrialServers::run(const campaign::TrialPlan& plan,
 namespace {
 
 /// Runs one trial in a copy of this process. @return how it ended.
-std::string run_copy(const TrialService& service, const std::vector<std::string>& words) try {
-  const std::vector<std::string> arguments(words.begin() + 2, words.end());
-  service.prepare(arguments);
+std::string run_copy(const TrialService& service, const std::string& message) try {
+  const std::size_t end_of_log = message.find(kEnd);
+  const TrialRequest request =
+      parse_trial_request(std::string_view(message).substr(end_of_log + 1));
+  service.prepare(request);
   // The grace period lets it end its own processes.
-  os::ChildProcess trial({.arguments = {words[1]},
+  os::ChildProcess trial({.arguments = {request.folder.filename().string()},
                           .environment = {},
-                          .log = words[0],
+                          .log = message.substr(0, end_of_log),
                           .grace = std::chrono::seconds(10),
-                          .body = [&] { return service.run(arguments); }});
+                          .body = [&] { return service.run(request); }});
   while (!trial.wait(kPollPeriod)) {
-    const auto message = receive(STDIN_FILENO, Duration(0));
-    if (message && message->empty()) _exit(exit_code(ErrorCode::kSetup));  // ends the trial, too
-    if (message) trial.terminate();
+    const auto asked = receive(STDIN_FILENO, Duration(0));
+    if (asked && asked->empty()) _exit(exit_code(ErrorCode::kSetup));  // ends the trial, too
+    if (asked) trial.terminate();
   }
   return trial.poll()->description;
 } catch (const Error& e) {
@@ -210,7 +176,7 @@ int serve_trials(const TrialService& service) {
     const std::optional<std::string> request = receive(STDIN_FILENO, kForever);
     if (!request || *request == kStop) continue;
     if (request->empty()) return 0;
-    if (!send_message(STDIN_FILENO, run_copy(service, words_of(*request)))) return 0;
+    if (!send_message(STDIN_FILENO, run_copy(service, *request))) return 0;
   }
 }
 

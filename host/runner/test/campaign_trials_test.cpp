@@ -48,18 +48,6 @@ TEST_F(CampaignTrials, DependOnProgramsWorldAndSimulator) {
   EXPECT_EQ(files.back(), "/fake/simulator");
 }
 
-TEST_F(CampaignTrials, SayInTheirArgumentsWhatDiffersFromTheScenarioFile) {
-  auto& entry = campaign_.scenarios.front();
-  scenario::Condition slowed = entry.scenario.conditions.front();
-  scenario::slow_down(slowed, 2.5);
-  entry.scenario.settings = {{"time_limit_s", "7"}};
-  const campaign::TrialPlan plan{&entry.scenario, &slowed, 9, "/out", true, "/ideal.toml"};
-  EXPECT_THAT(trial_arguments(plan),
-              ElementsAre(entry.scenario.file, "--condition", slowed.slowed_from, "--seed", "9",
-                          "--simulator", "fake", "--quiet", "--profile", "/ideal.toml",
-                          "--slowdown", "2.5", "--set", "time_limit_s=7", "--images"));
-}
-
 TEST_F(CampaignTrials, RejectAnUnknownSimulator) {
   campaign_.scenarios.front().scenario.conditions.front().simulator = "another";
   sim::WorldStore worlds;

@@ -21,12 +21,12 @@ class Servers : public testing::Test {
  protected:
   /// Trials whose result has the seed that is in memory.
   TrialService service() {
-    return {.prepare = [](const std::vector<std::string>&) {},
+    return {.prepare = [](const TrialRequest&) {},
             .run =
-                [this](const std::vector<std::string>& arguments) {
+                [this](const TrialRequest& request) {
                   scenario::Scenario scenario;
                   auto result = campaign::make_setup_failure(scenario, {}, seed_, "not flown");
-                  campaign::write_result(arguments.back(), result);
+                  campaign::write_result(request.folder, result);
                   return 0;
                 }};
   }
@@ -47,7 +47,7 @@ TEST_F(Servers, HaveInMemoryWhatTheirProcessHasRead) {
   std::atomic<int> right = 0;
   for (const std::string name : {"a", "b"})
     at_once.emplace_back([&, name] {
-      const auto result = servers.run({"scenario"}, folder(name), {});
+      const auto result = servers.run({.scenario = "s.toml", .folder = folder(name)}, {});
       if (result && result->seed == 7) ++right;
     });
   at_once.clear();
@@ -56,10 +56,10 @@ TEST_F(Servers, HaveInMemoryWhatTheirProcessHasRead) {
 
 TEST_F(Servers, SayHowATrialEndedThatLeavesNoResult) {
   TrialServers servers;
-  servers.start(1, {.prepare = [](const std::vector<std::string>&) {},
-                    .run = [](const std::vector<std::string>&) { return raise(SIGKILL); }});
-  const Error error =
-      thrown_error(ErrorCode::kSetup, [&] { servers.run({"scenario"}, folder("a"), {}); });
+  servers.start(1, {.prepare = [](const TrialRequest&) {},
+                    .run = [](const TrialRequest&) { return raise(SIGKILL); }});
+  const Error error = thrown_error(
+      ErrorCode::kSetup, [&] { servers.run({.scenario = "s.toml", .folder = folder("a")}, {}); });
   EXPECT_NE(std::string(error.what()).find("signal 9"), std::string::npos) << error.what();
 }
 

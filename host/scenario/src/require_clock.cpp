@@ -2,7 +2,6 @@
 
 #include <tether/base/error.h>
 #include <tether/scenario/scenario.h>
-#include <tether/toml/table.h>
 
 namespace tether::scenario {
 
@@ -12,7 +11,7 @@ void require_clock(const Scenario& scenario, const Condition& condition) {
     const computer::ClockKind clock = computer_of(condition, i).clock.kind;
     if (!uav.sut.concurrent || clock == computer::ClockKind::kWall) continue;
     throw Error(
-        ErrorCode::kBadFile, toml::place_of(scenario.file, "concurrent"),
+        ErrorCode::kBadFile, scenario.where("concurrent"),
         fmt::format("the SUT of UAV \"{}\" is concurrent, but condition \"{}\" has the clock "
                     "\"{}\". Several threads share a time line only with clock = \"wall\".",
                     uav.placement.name, condition.name, computer::name(clock)))

@@ -159,10 +159,10 @@ Start cancel_jobs(const fs::path& out, const RunProgram& run) {
   return start;
 }
 
-Cluster::Cluster(Start start, fs::path out, Arguments arguments, const RunProgram& run)
+Cluster::Cluster(Start start, fs::path out, Request request, const RunProgram& run)
     : start_(std::move(start)),
       out_(std::move(out)),
-      arguments_(std::move(arguments)),
+      request_(std::move(request)),
       engine_(make_engine(start_.options, out_, run)) {
   start_.jobs = std::max(1, start_.jobs);
   if (start_.jobs > kMostTasks)
@@ -184,7 +184,7 @@ Collected Cluster::fly(std::span<const TrialPlan* const> plans, const std::vecto
                    .files = digests_of(files),
                    .command = remembered(start_)},
       .order = {.tasks = static_cast<std::size_t>(start_.jobs), .cores = cores_of(plans)},
-      .arguments = arguments_,
+      .request = request_,
       .done_before = done_before,
       .stop = stop,
       .detaches = start_.options.detach,

@@ -98,8 +98,7 @@ class Collector {
   std::vector<Item> missing_items() const {
     std::vector<Item> items;
     for (const auto& [key, plan] : wanted_)
-      if (!results_.contains(key))
-        items.push_back({key, setup_.arguments(*plan), lost_.losses(key)});
+      if (!results_.contains(key)) items.push_back({key, setup_.request(*plan), lost_.losses(key)});
     return items;
   }
 

@@ -79,14 +79,13 @@ RoundSettings settings_from(const Json& json) {
 }
 
 std::string line_of(const Item& item) {
-  Json json{{"folder", item.folder}, {"arguments", item.arguments}};
+  Json json{{"folder", item.folder}, {"request", item.request}};
   if (!item.losses.empty()) json["losses"] = item.losses;
   return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 Item item_from(const Json& json) {
-  return {json.at("folder"), json.at("arguments"),
-          json.value("losses", std::vector<std::string>{})};
+  return {json.at("folder"), json.at("request"), json.value("losses", std::vector<std::string>{})};
 }
 
 }  // namespace

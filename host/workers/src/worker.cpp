@@ -117,9 +117,7 @@ class Worker {
     return true;
   }
 
-  bool fly(std::size_t index, Item item) {
-    if (round_.settings().scales_nodes && round_.settings().measures_nodes)
-      item.arguments.insert(item.arguments.end(), {"--cpu-time-scale", fmt::format("{}", scale_)});
+  bool fly(std::size_t index, const Item& item) {
     const fs::path local = setup_.scratch / std::to_string(index);
     fs::create_directories(local);
     const auto lose = [&](const std::string& why) {
@@ -128,7 +126,7 @@ class Worker {
     };
     Flight flight;
     try {
-      flight = setup_.fly(item, local);
+      flight = setup_.fly(item, local, scale_);
       if (flight.end == Flight::End::kResult) {
         setup_.check();
         hand_in(index, item, local);

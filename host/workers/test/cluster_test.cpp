@@ -21,7 +21,7 @@ class ClusterTest : public testing::Test {
   RunProgram run_ = [this](const auto& words) { return answer(words); };
 
   Collected start(Start start, std::span<const campaign::TrialPlan* const> plans) {
-    Cluster cluster(std::move(start), fake_.folder.root(), FakeCampaign::arguments, run_);
+    Cluster cluster(std::move(start), fake_.folder.root(), FakeCampaign::request, run_);
     return cluster.fly(
         plans, {}, 0, {}, [](const std::string&) {}, [](const campaign::CampaignProgress&) {});
   }

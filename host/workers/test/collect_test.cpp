@@ -49,7 +49,7 @@ class Collect : public testing::Test {
     return collect(fake_.folder, fake_.wanted(), engine_,
                    {.settings = {},
                     .order = {.tasks = 2},
-                    .arguments = FakeCampaign::arguments,
+                    .request = FakeCampaign::request,
                     .stop = stop_.get_token(),
                     .detaches = detaches_,
                     .now = [this] { return now_; },
@@ -64,9 +64,10 @@ class Collect : public testing::Test {
     return [this, index, node](const Round& round) {
       WorkerSetup setup = worker(node);
       const std::size_t begin = fake_.flown.size();
-      setup.fly = [this, index, begin, own = setup.fly](const Item& item, const auto& local) {
+      setup.fly = [this, index, begin, own = setup.fly](const Item& item, const auto& local,
+                                                        double scale) {
         if (fake_.flown.size() == begin + index) throw Killed{};
-        return own(item, local);
+        return own(item, local, scale);
       };
       try {
         work(round, setup);
@@ -126,9 +127,9 @@ TEST_F(Collect, DoesNotCountTrialsAsLostThatWereNotBegun) {
 TEST_F(Collect, ReportsATrialThatWasLostThreeTimesAsNotFlown) {
   const auto lose_one = [&](const Round& round) {
     WorkerSetup setup = worker("n" + std::to_string(workers_));
-    setup.fly = [own = setup.fly](const Item& item, const auto& local) {
+    setup.fly = [own = setup.fly](const Item& item, const auto& local, double scale) {
       if (item.folder == "turn/target/seed-0002") return Flight{Flight::End::kLost, "no memory"};
-      return own(item, local);
+      return own(item, local, scale);
     };
     work(round, setup);
   };
@@ -219,7 +220,7 @@ TEST_F(Collect, TwoCollectorsGetOneResultForEachTrial) {
     second = collect(fake_.folder, fake_.wanted(), other,
                      {.settings = {},
                       .order = {.tasks = 2},
-                      .arguments = FakeCampaign::arguments,
+                      .request = FakeCampaign::request,
                       .now = [this] { return now_; },
                       .sleep = [this](Duration pause) { now_ += pause; }});
   }};

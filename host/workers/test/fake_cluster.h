@@ -33,14 +33,14 @@ struct FakeCampaign {
   }
   std::vector<Item> items() const {
     std::vector<Item> all;
-    for (const auto& plan : plans) all.push_back({key(plan), arguments(plan)});
+    for (const auto& plan : plans) all.push_back({key(plan), request(plan)});
     return all;
   }
   std::string key(const campaign::TrialPlan& plan) const {
     return plan.folder.lexically_relative(folder.root()).string();
   }
-  static std::vector<std::string> arguments(const campaign::TrialPlan& plan) {
-    return {"--seed", std::to_string(plan.seed)};
+  static std::string request(const campaign::TrialPlan& plan) {
+    return "seed " + std::to_string(plan.seed);
   }
   Flight fly(const Item& item, const std::filesystem::path& local) {
     flown.push_back(item.folder);
@@ -52,9 +52,10 @@ struct FakeCampaign {
     return {};
   }
   WorkerSetup worker(const std::string& id, const std::string& node = "n1") {
-    return {.self = {id, node, "7_" + id},
-            .scratch = scratch.path("local-" + id),
-            .fly = [this](const Item& item, const auto& local) { return fly(item, local); }};
+    return {
+        .self = {id, node, "7_" + id},
+        .scratch = scratch.path("local-" + id),
+        .fly = [this](const Item& item, const auto& local, double) { return fly(item, local); }};
   }
   std::size_t results() const {
     std::size_t count = 0;

@@ -14,7 +14,7 @@ class RoundTest : public testing::Test {
   std::vector<Item> many(std::size_t count) const {
     std::vector<Item> items;
     for (std::size_t i = 0; i < count; ++i)
-      items.push_back({"s/c/seed-" + std::to_string(i), {"--seed", std::to_string(i)}});
+      items.push_back({"s/c/seed-" + std::to_string(i), "seed " + std::to_string(i)});
     return items;
   }
   FakeCampaign fake_;

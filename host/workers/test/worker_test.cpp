@@ -40,9 +40,9 @@ TEST_F(WorkerTest, LeavesTheResultOfAFasterWorker) {
 
 TEST_F(WorkerTest, GoesOnAfterATrialThatTheMachineLost) {
   WorkerSetup setup = fake_.worker("a", "n7");
-  setup.fly = [&, own = setup.fly](const Item& item, const auto& local) {
+  setup.fly = [&, own = setup.fly](const Item& item, const auto& local, double scale) {
     if (item.folder == "turn/host/seed-0002") return Flight{Flight::End::kLost, "no port"};
-    return own(item, local);
+    return own(item, local, scale);
   };
   const WorkerEnd end = run(setup);
   EXPECT_EQ(end.flown, 8u);
@@ -56,7 +56,9 @@ TEST_F(WorkerTest, GoesOnAfterATrialThatTheMachineLost) {
 // A machine on which everything fails at once would otherwise lose the whole campaign.
 TEST_F(WorkerTest, EndsWhereTheMachineIsBroken) {
   WorkerSetup setup = fake_.worker("a");
-  setup.fly = [](const Item&, const auto&) { return Flight{Flight::End::kLost, "no library"}; };
+  setup.fly = [](const Item&, const auto&, double) {
+    return Flight{Flight::End::kLost, "no library"};
+  };
   const WorkerEnd end = run(setup);
   EXPECT_EQ(end.lost, kMostLossesInARow);
   EXPECT_NE(end.why_early, "");
@@ -67,8 +69,8 @@ TEST_F(WorkerTest, LosesTheTrialInHandWhenItIsStopped) {
   std::stop_source stop;
   WorkerSetup setup = fake_.worker("a");
   setup.stop = stop.get_token();
-  setup.fly = [&, own = setup.fly](const Item& item, const auto& local) {
-    if (fake_.flown.size() < 3) return own(item, local);
+  setup.fly = [&, own = setup.fly](const Item& item, const auto& local, double scale) {
+    if (fake_.flown.size() < 3) return own(item, local, scale);
     stop.request_stop();
     return Flight{Flight::End::kStopped, "stopped"};
   };

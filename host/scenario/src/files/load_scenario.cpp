@@ -14,6 +14,7 @@
 
 #include <fmt/format.h>
 
+#include <tether/base/suggest.h>
 #include <tether/base/units.h>
 #include <tether/scenario/scenario.h>
 #include <tether/toml/table.h>
@@ -348,6 +349,20 @@ std::string slug(std::string_view name) {
   }
   while (slug.ends_with('-')) slug.pop_back();
   return slug;
+}
+
+Condition pick_condition(const Scenario& scenario, const std::string& wanted) {
+  if (wanted.empty()) return scenario.conditions.front();
+  if (const auto* condition = scenario.find_condition(wanted)) return *condition;
+  std::vector<std::string_view> names;
+  for (const Condition& condition : scenario.conditions) names.push_back(condition.name);
+  throw Error(ErrorCode::kUsage, {scenario.file.string()},
+              fmt::format("has no condition '{}'; {}", wanted, allowed_hint(wanted, names)))
+      .about(wanted);
+}
+
+FileLocation Scenario::where(std::string_view key) const {
+  return toml::place_of(file, key);
 }
 
 const Condition* Scenario::find_condition(std::string_view condition) const {

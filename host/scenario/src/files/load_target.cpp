@@ -143,4 +143,8 @@ Target load_target(const std::filesystem::path& file) {
   return target;
 }
 
+FileLocation Target::where(std::string_view key) const {
+  return toml::place_of(file, key);
+}
+
 }  // namespace tether::scenario

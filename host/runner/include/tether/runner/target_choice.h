@@ -6,18 +6,23 @@
 
 #include <tether/scenario/target.h>
 
-namespace tether::app {
+namespace tether::runner {
 
 /// The user starts the SUT, on any machine: `--target wait`.
-struct WaitForSut {};
+struct WaitForSut {
+  friend bool operator==(const WaitForSut&, const WaitForSut&) = default;
+};
 
-/// The value of `--target`: none, a name or file, the address of a board, or "wait".
-using TargetOption =
+/// Where SUTs run instead of on their condition's computers: nowhere else, on the target of a file,
+/// on a board, or where the user starts them.
+using TargetChoice =
     std::variant<std::monostate, std::filesystem::path, scenario::SshAddress, WaitForSut>;
 
-/// Parses the value: "" is none, "wait" is WaitForSut, a text with "://" is an address, and any
+/// As users write it: "" is none, "wait" is WaitForSut, a text with "://" is an address, and any
 /// other text is a name or file. Reads no file.
 /// @throws Error(kUsage) as `scenario::parse_ssh_address`.
-TargetOption parse_target_option(const std::string& text);
+TargetChoice parse_target_choice(const std::string& text);
+/// The inverse, for files whose path has a '/'.
+std::string to_text(const TargetChoice& choice);
 
-}  // namespace tether::app
+}  // namespace tether::runner

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <tether/campaign/run_campaign.h>
+#include <tether/runner/trial_request.h>
 
 /// Trials in processes of their own that do not read their world again: a server, which is a
 /// process of this program, has it in memory, and each trial is a copy of the server.
@@ -19,12 +20,12 @@ namespace tether::runner {
 /// As its only argument, makes this program a server of trials.
 inline constexpr std::string_view kServeTrials = "--serve-trials";
 
-/// What a server does with the arguments of `tether run`.
+/// What a server does with a request.
 struct TrialService {
   /// Reads what the trial needs into memory. Its failures are left to `run`.
-  std::function<void(const std::vector<std::string>& arguments)> prepare;
+  std::function<void(const TrialRequest& request)> prepare;
   /// Runs the trial, in a copy of the server. @return the exit code.
-  std::function<int(const std::vector<std::string>& arguments)> run;
+  std::function<int(const TrialRequest& request)> run;
 };
 /// Serves the process that started this one until it ends. @pre this process has one thread.
 /// @return the exit code.
@@ -40,10 +41,9 @@ class TrialServers {
   /// Starts so many servers as copies of this process, which have in memory what it has read. A
   /// server that is needed besides is a new process. @pre as for a body of os::ChildCommand.
   void start(int count, const TrialService& service);
-  /// Does what `tether run` would with these arguments, which leaves its result and log in
-  /// `folder`. None: a stop request ended it. @throws Error(kSetup) if it leaves no result.
-  std::optional<campaign::TrialResult> run(const std::vector<std::string>& of_run,
-                                           const std::filesystem::path& folder,
+  /// Flies the trial, which leaves its result and log in the request's folder. None: a stop request
+  /// ended it. @throws Error(kSetup) if it leaves no result.
+  std::optional<campaign::TrialResult> run(const TrialRequest& request,
                                            const std::stop_token& stop);
   /// The same for a trial of a campaign. A stop request ends it as interrupted.
   campaign::TrialResult run(const campaign::TrialPlan& plan, const std::stop_token& stop);
@@ -55,8 +55,5 @@ class TrialServers {
   std::mutex mutex_;
   std::vector<std::unique_ptr<Server>> idle_;
 };
-
-/// The arguments of `tether run` for a trial, without --out.
-std::vector<std::string> trial_arguments(const campaign::TrialPlan& plan);
 
 }  // namespace tether::runner

@@ -155,6 +155,8 @@ struct Scenario {
   /// SUTs' files. Absolute, sorted.
   std::vector<std::filesystem::path> files;
 
+  /// The line of the key in the file, if that has it once.
+  FileLocation where(std::string_view key) const;
   /// nullptr if there is none of that name.
   const Condition* find_condition(std::string_view condition) const;
 };
@@ -177,6 +179,10 @@ sim::WorldRequest world_request(const Scenario& scenario, std::uint64_t seed);
 
 /// Makes the profile the topmost layer of the scenario's sensors, under each condition.
 void lay_profile(Scenario& scenario, const Profile& profile);
+
+/// The condition of that name; the scenario's first one if it is empty.
+/// @throws Error(kUsage) about the name, with the nearest one, if there is none.
+Condition pick_condition(const Scenario& scenario, const std::string& wanted);
 
 /// The computer on which that UAV's SUT runs.
 const Computer& computer_of(const Condition& condition, std::size_t uav);

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include <tether/base/error.h>
 #include <tether/computer/clock.h>
 #include <tether/energy/meter.h>
 #include <tether/os/counted_program.h>
@@ -18,6 +19,8 @@ namespace tether::scenario {
 struct SshAddress {
   std::string destination;  ///< "user@board", or a name from the user's ssh_config
   int port = 0;             ///< 0: as in ssh_config
+
+  friend bool operator==(const SshAddress&, const SshAddress&) = default;
 };
 
 struct Target {
@@ -36,6 +39,9 @@ struct Target {
   std::optional<energy::Computer> power{};  ///< none: not known
   std::optional<os::Emulator>
       emulator{};  ///< with computer::ClockKind::kCounted only; `launcher` then starts it
+
+  /// The line of the key in the file, if that has it once.
+  FileLocation where(std::string_view key) const;
 };
 
 /// "ssh://[user@]host[:port]". @throws Error(kUsage) about the text.

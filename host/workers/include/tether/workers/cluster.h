@@ -67,12 +67,12 @@ Start cancel_jobs(const std::filesystem::path& out, const RunProgram& run = run_
 /// Has trials flown below a folder, once or several times.
 class Cluster {
  public:
-  using Arguments = std::function<std::vector<std::string>(const campaign::TrialPlan&)>;
+  using Request = std::function<std::string(const campaign::TrialPlan&)>;
 
-  /// @param arguments of `tether run` for a plan.
+  /// @param request of a plan, as text.
   /// @throws Error(kUsage) and Error(kSetup) if there is no such engine, before anything is
   ///   written.
-  Cluster(Start start, std::filesystem::path out, Arguments arguments,
+  Cluster(Start start, std::filesystem::path out, Request request,
           const RunProgram& run = run_program);
 
   const Start& start() const { return start_; }
@@ -89,7 +89,7 @@ class Cluster {
  private:
   Start start_;
   std::filesystem::path out_;
-  Arguments arguments_;
+  Request request_;
   std::unique_ptr<Engine> engine_;
 };
 

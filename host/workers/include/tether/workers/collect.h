@@ -19,8 +19,7 @@ namespace tether::workers {
 struct CollectSetup {
   RoundSettings settings;  ///< of each round; `job` and `items` are filled in
   Order order;
-  /// The arguments of `tether run` for a plan.
-  std::function<std::vector<std::string>(const campaign::TrialPlan&)> arguments;
+  std::function<std::string(const campaign::TrialPlan&)> request;  ///< of a plan, as text
   std::size_t done_before = 0;  ///< trials with a result, for the progress
   std::stop_token stop{};
   /// Ends as soon as a round was started.

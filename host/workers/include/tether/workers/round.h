@@ -33,9 +33,9 @@ inline constexpr std::size_t kChunksPerShard = 64;
 
 /// One trial to fly.
 struct Item {
-  std::string folder;                  ///< of its result, relative to the campaign's folder
-  std::vector<std::string> arguments;  ///< of `tether run`, without --out
-  std::vector<std::string> losses{};   ///< why earlier attempts were lost, one line each
+  std::string folder;                 ///< of its result, relative to the campaign's folder
+  std::string request;                ///< the trial, as text
+  std::vector<std::string> losses{};  ///< why earlier attempts were lost, one line each
 
   friend bool operator==(const Item&, const Item&) = default;
 };

@@ -40,8 +40,9 @@ struct Flight {
 struct WorkerSetup {
   WorkerName self;
   std::filesystem::path scratch;  ///< an empty folder of this machine, not shared
-  /// Flies the item and leaves everything in the folder, which exists and is empty.
-  std::function<Flight(const Item&, const std::filesystem::path&)> fly;
+  /// Flies the item, with CPU time counted so many times, and leaves everything in the folder,
+  /// which exists and is empty.
+  std::function<Flight(const Item&, const std::filesystem::path&, double cpu_time_scale)> fly;
   /// Called after each flight, before its result counts: throws if it must not.
   std::function<void()> check = [] {};
   /// CPU time of a fixed piece of work on this machine [ms]; called once for each node.
