@@ -12,6 +12,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <tether/base_testing/sanitizer.h>
 #include <tether/os/file_descriptor.h>
 #include <tether/os/process_table.h>
 
@@ -87,7 +88,7 @@ TEST_F(ProcessTable, ShowsWhatAProcessKnowsOfItsChildren) {
 
 // Of this process there is the calling thread, which runs.
 TEST_F(ProcessTable, CountsTheThreadsOfAProcessAndItsDescendantsByState) {
-#ifdef __SANITIZE_THREAD__
+#if TETHER_THREAD_SANITIZER
   GTEST_SKIP() << "each process has a thread of the sanitizer, too";
 #endif
   const ThreadStates alone = thread_states(getpid());

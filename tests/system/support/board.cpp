@@ -86,8 +86,9 @@ void SshBoard::write_settings(const std::string& mark) {
                  "PasswordAuthentication no\nKbdInteractiveAuthentication no\n"
                  "MaxStartups 50\nSetEnv TETHER_TEST_MARK=" +
                  mark + " TETHER_BOARD_LOCK=" + (folder_ / "lock").string() +
-                 " TMPDIR=" + (folder_ / "tmp").string() + " PATH=" + (folder_ / "bin").string() +
-                 ":/usr/local/bin:/usr/bin:/bin\n");
+                 // Its shells do not read what this machine's shells read first.
+                 " HOME=" + folder_.path().string() + " TMPDIR=" + (folder_ / "tmp").string() +
+                 " PATH=" + (folder_ / "bin").string() + ":/usr/local/bin:/usr/bin:/bin\n");
   std::string key = read_text(folder_ / "host_key.pub");
   write_text(folder_ / "known_hosts", "[127.0.0.1]:" + port + " " + key);
   write_text(folder_ / "ssh_config",
