@@ -105,29 +105,21 @@ runner::BackEnd no_back_end(const std::string&) {
           .files = [] { return std::vector<std::filesystem::path>{}; }};
 }
 
-/// The word that follows `option`.
-std::string value_of(const std::vector<std::string>& arguments, std::string_view option) {
-  for (std::size_t i = 0; i + 1 < arguments.size(); ++i)
-    if (arguments[i] == option) return arguments[i + 1];
-  return "";
-}
-
 runner::TrialService trial_service(sim::WorldStore& worlds) {
   const auto scenario =
       std::make_shared<scenario::Scenario>(campaign_of(1).scenarios.front().scenario);
   return {.prepare =
-              [scenario, &worlds](const std::vector<std::string>&) {
+              [scenario, &worlds](const runner::TrialRequest&) {
                 worlds.load(scenario::world_request(*scenario, 1), nullptr);
               },
           .run =
-              [scenario](const std::vector<std::string>& arguments) {
+              [scenario](const runner::TrialRequest& request) {
                 compute();
                 auto result = campaign::make_setup_failure(
-                    *scenario, *scenario->find_condition("host"),
-                    std::stoull(value_of(arguments, "--seed")), "computed");
+                    *scenario, *scenario->find_condition("host"), request.seed, "computed");
                 result.end = "finished";
                 result.outcome = campaign::Outcome::kGoalReached;
-                campaign::write_result(value_of(arguments, "--out"), result);
+                campaign::write_result(request.folder, result);
                 return 0;
               }};
 }

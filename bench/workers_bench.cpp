@@ -81,22 +81,18 @@ int main(int argc, char** argv) {
   const std::string text = campaign::to_json(result);
 
   NoEngine engine;
-  const workers::CollectSetup setup{.settings = {},
-                                    .order = {.tasks = tasks},
-                                    .arguments =
-                                        [](const auto& plan) {
-                                          return std::vector<std::string>{
-                                              "/scenario.toml", "--condition", plan.condition->name,
-                                              "--seed", std::to_string(plan.seed)};
-                                        },
-                                    .now = [] { return os::read_clock(CLOCK_MONOTONIC); },
-                                    .sleep = [](Duration) {}};
+  const workers::CollectSetup setup{
+      .settings = {},
+      .order = {.tasks = tasks},
+      .request = [](const auto& plan) { return plan.condition->name + std::to_string(plan.seed); },
+      .now = [] { return os::read_clock(CLOCK_MONOTONIC); },
+      .sleep = [](Duration) {}};
 
   Meter meter{folder, trials};
   (void)workers::collect(folder, wanted, engine, setup);
   meter.print("planning");
   const auto scratch = folder.root().string() + ".scratch";
-  const auto write_files = [&](const workers::Item&, const std::filesystem::path& local) {
+  const auto write_files = [&](const workers::Item&, const std::filesystem::path& local, double) {
     for (const char* name : {"record.mcap", "sut-uav1.log"}) std::ofstream(local / name) << "x";
     std::ofstream(local / "run.log");  // empty if all is well
     std::ofstream(local / campaign::kResultFile) << text;

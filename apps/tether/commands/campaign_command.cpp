@@ -125,6 +125,14 @@ std::optional<campaign::CampaignOutcome> fly_missing(
   return collected.outcome;
 }
 
+bool has_unseen_time(const campaign::CampaignResults& results) {
+  for (const campaign::ScenarioResults& scenario : results.scenarios)
+    for (const campaign::ConditionResults& condition : scenario.conditions)
+      if (std::ranges::any_of(condition.trials, &campaign::TrialResult::has_unseen_time))
+        return true;
+  return false;
+}
+
 int run_trials(const CampaignOptions& given, const std::stop_token& stop) {
   const CampaignOptions options = collecting(given);
   const scenario::Campaign campaign = load(options);
@@ -164,16 +172,16 @@ int run_trials(const CampaignOptions& given, const std::stop_token& stop) {
         servers, folder, campaign, jobs,
         [&, &files = files] { campaign::require_unchanged(campaign, settings, files); }, stop);
   }
+  const campaign::CampaignResults results = campaign::read_campaign_results(out);
   if (!options.junit.empty())
-    os::write_file_atomically(options.junit,
-                              report::to_junit(campaign::read_campaign_results(out), out));
+    os::write_file_atomically(options.junit, report::to_junit(results, out));
   if (outcome.interrupted) {
     say("tether: interrupted; to continue, type: tether campaign {} --out {} --resume\n",
         options.campaign.string(), out.string());
     return exit_code(ErrorCode::kSetup);
   }
-  print_campaign_summary(out);
-  return outcome.failed > 0 ? exit_code(ErrorCode::kSetup) : 0;
+  print_campaign_summary(results, out);
+  return outcome.failed > 0 || has_unseen_time(results) ? exit_code(ErrorCode::kSetup) : 0;
 }
 
 }  // namespace

@@ -131,8 +131,8 @@ int report(const ReportOptions& options, const std::stop_token&) {
   return 0;
 }
 
-void print_campaign_summary(const std::filesystem::path& folder) {
-  const campaign::CampaignResults results = campaign::read_campaign_results(folder);
+void print_campaign_summary(const campaign::CampaignResults& results,
+                            const std::filesystem::path& folder) {
   const std::vector<report::Verdict> verdicts = report::verdicts_of(results, folder);
   print(report::verdict_text(verdicts, markup_of_stdout()));
   const auto show = [](const report::Table& table) {

@@ -64,10 +64,11 @@ sizing::Question question_of(const SizeOptions& options) {
 }
 
 report::Board board_of(const scenario::ShippedFiles& shipped, const std::filesystem::path& given,
-                       const scenario::Condition& condition) {
+                       const scenario::Scenario& scenario, const scenario::Condition& condition) {
   const std::filesystem::path file = shipped.find(scenario::ShippedKind::kTarget, given);
   require_kind(file, FileKind::kTarget);
-  const auto [factor, bounds] = scenario::slowness(scenario::load_target(file), condition);
+  const auto [factor, bounds] =
+      scenario::slowness(scenario::load_target(file), scenario, condition);
   report::Board board{.name = file.filename().string(), .slowdown = factor};
   if (bounds) {
     board.low = bounds->first;
@@ -109,7 +110,7 @@ Plan make_plan(const SizeOptions& options) {
                   fmt::format("{} times the factor of condition \"{}\" is more than {}.",
                               plan.report.question.most, own.name, kLargestFactor));
   for (const std::filesystem::path& target : options.targets)
-    plan.report.boards.push_back(board_of(shipped, target, own));
+    plan.report.boards.push_back(board_of(shipped, target, scenario, own));
   plan.report.scenario = scenario.name;
   plan.report.description = scenario.description;
   plan.flights.conditions = {own};
@@ -125,7 +126,7 @@ int code_of(const report::SizeReport& report) {
   const sizing::Answer& answer = report.synchronised.answer;
   const bool is_answered =
       report.boards.empty()
-          ? answer.is_narrow && !report::has_unseen_time(report)
+          ? answer.is_narrow && !answer.is_below && !report::has_unseen_time(report)
           : std::ranges::all_of(report.boards, [&](const report::Board& board) {
               return report::verdict(board, report.synchronised) == report::BoardVerdict::kSuffices;
             });

@@ -75,6 +75,8 @@ void count(const std::string& stat, std::string_view left_out, ThreadStates& sum
       ++sum.runnable;
       break;
     case 'D':
+      ++sum.on_disk;
+      break;
     case 'T':
     case 't':
       ++sum.halted;

@@ -26,7 +26,7 @@ void SutLooks::add(const ThreadStates& states, Duration represented) {
     computing += represented;
     of_all_threads += states.runnable * represented;
   } else if (!states.is_halted) {
-    waiting += represented;
+    (states.is_on_disk ? on_disk : waiting) += represented;
   }
 }
 
@@ -39,7 +39,7 @@ Duration Coordinator::Impl::until_look() const {
 
 bool Coordinator::Impl::is_looked_at(const Session& session) const {
   return hooks_.threads_of && is_synchronised() && is_computing(session) && !session.is_hidden &&
-         !session.is_concurrent() && !session.hello.clock.counts_waiting();
+         !session.is_concurrent() && !session.hello.clock.counts_waiting_as_it_is();
 }
 
 // What a SUT does is known only if it has sent nothing by then: it may have been looked at while it

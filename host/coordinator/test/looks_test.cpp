@@ -66,6 +66,13 @@ TEST_F(Looks, IgnoreASutThatIsHalted) {
   EXPECT_EQ(of_silent_sut().waiting, 0s);
 }
 
+TEST_F(Looks, TellWaitingForTheDiskFromOther) {
+  states_ = {.runnable = 0, .is_on_disk = true};
+  const SutLooks looks = of_silent_sut();
+  EXPECT_EQ(looks.waiting, 0s);
+  EXPECT_NEAR(to_seconds(looks.on_disk), 2.0, 0.05);
+}
+
 TEST_F(Looks, IgnoreSutsWhoseTimePassesWhileTheyWait) {
   for (const auto clock : {computer::ClockKind::kWall, computer::ClockKind::kUnstamped}) {
     EXPECT_EQ(of_silent_sut(clock).waiting, 0s);

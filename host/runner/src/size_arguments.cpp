@@ -45,7 +45,7 @@ std::vector<std::string> size_arguments(const TrialSpec& spec,
   if (own == nullptr) {
     const auto& target = computer_of(spec.condition, 0).target;
     if (is_slowed || !target || target->file.empty() || !slower.seats.empty()) return {};
-    scenario::slowness(*target, slower);
+    scenario::slowness(*target, spec.scenario, slower);
     words.insert(words.end(), {"--target", target->file.string()});
   }
   // The answer may be on either side of what was flown.

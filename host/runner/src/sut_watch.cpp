@@ -14,6 +14,9 @@ namespace {
 // camera, and ten looks; 1 % is what two measurements of a CPU clock differ by.
 constexpr Duration kLeastDoubt = std::chrono::milliseconds(20);
 constexpr double kDoubtfulShare = 0.01;
+// The first use of memory and of a library's pages waits for the disk, too.
+constexpr Duration kLeastDiskDoubt = std::chrono::milliseconds(200);
+constexpr double kDoubtfulDiskShare = 0.1;
 // Threads that hand over to each other are both runnable for a moment: on a busy machine, 4 to 10 %
 // of looks at such programs were seen to find two.
 constexpr double kDoubtfulThreads = 1.3;
@@ -36,18 +39,28 @@ std::optional<coordinator::ThreadStates> SutWatch::states(std::size_t uav) const
   const auto process = processes_.find(uav);
   if (process == processes_.end()) return std::nullopt;
   const os::ThreadStates states = os::thread_states(process->second, link::kClientThread);
-  return coordinator::ThreadStates{.runnable = states.runnable, .is_halted = states.halted > 0};
+  return coordinator::ThreadStates{.runnable = states.runnable,
+                                   .is_halted = states.halted > 0,
+                                   .is_on_disk = states.on_disk > 0};
 }
 
 std::vector<campaign::Doubt> doubts_of(const coordinator::SutReport& sut,
                                        const computer::Clock& clock, bool has_waits) {
   using Kind = campaign::Doubt::Kind;
   std::vector<campaign::Doubt> doubts;
-  const double least_s =
-      std::max(to_seconds(kLeastDoubt), kDoubtfulShare * to_seconds(sut.et.time_since_epoch()));
+  const double et_s = to_seconds(sut.et.time_since_epoch());
+  const double least_s = std::max(to_seconds(kLeastDoubt), kDoubtfulShare * et_s);
   const coordinator::SutLooks& looks = sut.looks;
-  if (const double waiting_s = to_seconds(looks.waiting); waiting_s > least_s && !has_waits)
-    doubts.push_back({Kind::kUnseenWait, sut.uav, waiting_s});
+  // What a scaled wall clock makes of waiting is in ET, like all of it.
+  const double waiting_s = to_seconds(looks.waiting);
+  const double stretched_s = clock.counts_waiting() ? waiting_s * clock.factor : waiting_s;
+  if (stretched_s > least_s && !has_waits)
+    doubts.push_back(
+        {clock.counts_waiting() ? Kind::kStretchedWait : Kind::kUnseenWait, sut.uav, waiting_s});
+  if (const double on_disk_s = to_seconds(looks.on_disk);
+      on_disk_s > std::max(to_seconds(kLeastDiskDoubt), kDoubtfulDiskShare * et_s) && !has_waits &&
+      !clock.counts_waiting())
+    doubts.push_back({Kind::kDiskWait, sut.uav, on_disk_s});
   const double computing_s = to_seconds(looks.computing);
   const double of_all_s = to_seconds(looks.of_all_threads);
   if (clock.kind == computer::ClockKind::kCpu &&

@@ -48,5 +48,23 @@ TEST(SutWatch, DoubtsThreadsWhoseTimesACpuClockAddsUp) {
   EXPECT_THAT(doubts_of(report(seconds(1), hardly), {ClockKind::kCpu}), IsEmpty());
 }
 
+TEST(SutWatch, DoubtsWaitingForTheDiskOfMoreThanATenthOfTheFlight) {
+  const computer::Clock cpu{ClockKind::kCpu}, wall{ClockKind::kWall, 6.0};
+  EXPECT_THAT(doubts_of(report(seconds(9), {.on_disk = milliseconds(899)}), cpu), IsEmpty());
+  EXPECT_THAT(doubts_of(report(seconds(9), {.on_disk = milliseconds(950)}), cpu),
+              ElementsAre(Doubt{Doubt::Kind::kDiskWait, "uav1", 0.95}));
+  EXPECT_THAT(doubts_of(report(milliseconds(100), {.on_disk = milliseconds(190)}), cpu), IsEmpty());
+  EXPECT_THAT(doubts_of(report(seconds(9), {.on_disk = seconds(5)}), wall), IsEmpty());
+}
+
+// Of 100 ms, a factor of 6 makes 600 ms.
+TEST(SutWatch, DoubtsWaitingThatAFactorOfTheWallClockStretches) {
+  const auto sut = report(seconds(9), {.waiting = milliseconds(100)});
+  EXPECT_THAT(doubts_of(sut, {ClockKind::kWall, 6.0}),
+              ElementsAre(Doubt{Doubt::Kind::kStretchedWait, "uav1", 0.1}));
+  EXPECT_THAT(doubts_of(report(seconds(9), {.waiting = milliseconds(14)}), {ClockKind::kWall, 6.0}),
+              IsEmpty());
+}
+
 }  // namespace
 }  // namespace tether::runner

@@ -10,7 +10,21 @@
 namespace tether::scenario {
 namespace {
 
-std::string why_not_comparable(const Target& target, const Condition& condition) {
+/// Of a target whose flights draw other power than those of the condition.
+bool has_another_power(const Target& target, const Scenario& scenario, const Condition& condition) {
+  if (!target.power) return false;
+  for (std::size_t i = 0; i < scenario.uavs.size(); ++i) {
+    if (!scenario.uavs[i].energy) continue;
+    const auto& own = computer_of(condition, i).target;
+    if (*target.power !=
+        (own && own->power ? *own->power : scenario.uavs[i].energy->model.computer))
+      return true;
+  }
+  return false;
+}
+
+std::string why_not_comparable(const Target& target, const Scenario& scenario,
+                               const Condition& condition) {
   if (target.ssh)
     return "is a board without a factor. Calibrate it (tether-sut calibrate --write-target), and "
            "give that file.";
@@ -23,6 +37,19 @@ std::string why_not_comparable(const Target& target, const Condition& condition)
         "cannot be compared with condition \"{}\": one has counted costs, the other "
         "a factor. Use a condition with the clock \"{}\".",
         condition.name, target.clock.kind == computer::ClockKind::kCounted ? "counted" : "cpu");
+  const Computer& computer = computer_of(condition, 0);
+  const bool has_own_launcher = computer.target && !computer.target->emulator;
+  if (!target.emulator && !target.launcher.empty() &&
+      !(has_own_launcher && computer.target->launcher == target.launcher))
+    return fmt::format(
+        "has a 'launcher', which condition \"{}\" does not fly with. Give the condition this "
+        "target (`target` in the file), and size it.",
+        condition.name);
+  if (has_another_power(target, scenario, condition))
+    return fmt::format(
+        "has another [power] than condition \"{}\" flies with, and the scenario simulates energy. "
+        "Give the condition this target (`target` in the file), and size it.",
+        condition.name);
   if (target.clock.kind != computer::ClockKind::kCounted) return "";
   const os::Emulator& own = *computer_of(condition, 0).target->emulator;
   if (own.program != target.emulator->program || own.cpu_model != target.emulator->cpu_model)
@@ -45,12 +72,12 @@ Slowness by_costs(const os::Emulator& target, const os::Emulator& own) {
 
 }  // namespace
 
-Slowness slowness(const Target& target, const Condition& condition) {
+Slowness slowness(const Target& target, const Scenario& scenario, const Condition& condition) {
   const auto require = [&](const std::string& why) {
     if (!why.empty())
       throw Error(ErrorCode::kUsage, {target.file.string()}, why).about(target.file.string());
   };
-  require(why_not_comparable(target, condition));
+  require(why_not_comparable(target, scenario, condition));
   if (target.clock.kind != computer::ClockKind::kCounted) {
     const double own = computer_of(condition, 0).clock.factor;
     Slowness result{.factor = target.clock.factor / own};

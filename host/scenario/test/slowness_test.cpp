@@ -32,18 +32,18 @@ TEST(Slowness, IsTheRatioOfTheFactors) {
   Condition condition;
   condition.computers[0].clock.kind = computer::ClockKind::kCpu;
   condition.computers[0].clock.factor = 2.0;
-  EXPECT_EQ(slowness(board, condition).factor, 3.0);
-  EXPECT_FALSE(slowness(board, condition).bounds);
+  EXPECT_EQ(slowness(board, {}, condition).factor, 3.0);
+  EXPECT_FALSE(slowness(board, {}, condition).bounds);
   board.cpu_factor_interval = {5.0, 8.0};
-  EXPECT_EQ(slowness(board, condition).bounds, std::pair(2.5, 4.0));
+  EXPECT_EQ(slowness(board, {}, condition).bounds, std::pair(2.5, 4.0));
 }
 
 TEST(Slowness, OfCountedTargetsIsWithinTheRatiosOfTheirCosts) {
   const Condition condition = on(counted({10, 20, 10, 40}));
-  const Slowness uneven = slowness(counted({20, 40, 20, 320}), condition);
+  const Slowness uneven = slowness(counted({20, 40, 20, 320}), {}, condition);
   EXPECT_EQ(uneven.bounds, std::pair(2.0, 8.0));
   EXPECT_DOUBLE_EQ(uneven.factor, 4.0);
-  EXPECT_EQ(slowness(counted({60, 120, 60, 240}), condition).bounds, std::pair(6.0, 6.0));
+  EXPECT_EQ(slowness(counted({60, 120, 60, 240}), {}, condition).bounds, std::pair(6.0, 6.0));
 }
 
 TEST(Slowness, IsRefusedWhereThereIsNone) {
@@ -55,11 +55,37 @@ TEST(Slowness, IsRefusedWhereThereIsNone) {
   Target of_another_model = counted({10, 20});
   of_another_model.emulator->cpu_model = "another";
   for (const Target& target : {over_ssh, by_factor, of_another_model})
-    EXPECT_EQ(thrown_error(ErrorCode::kUsage, [&] { slowness(target, condition); }).subject(),
+    EXPECT_EQ(thrown_error(ErrorCode::kUsage, [&] { slowness(target, {}, condition); }).subject(),
               target.file.string());
   Condition scripted;
   scripted.computers[0].clock.kind = computer::ClockKind::kScripted;
-  EXPECT_EQ(thrown_error(ErrorCode::kUsage, [&] { slowness(by_factor, scripted); }).subject(), "");
+  EXPECT_EQ(thrown_error(ErrorCode::kUsage, [&] { slowness(by_factor, {}, scripted); }).subject(),
+            "");
+}
+
+TEST(Slowness, IsRefusedWhereTheTargetDiffersInMoreThanSpeed) {
+  Condition condition;
+  condition.computers[0].clock.kind = computer::ClockKind::kCpu;
+  Target target;
+  target.file = "/t.toml";
+  target.clock.kind = computer::ClockKind::kCpu;
+  Scenario scenario;
+  target.power = energy::Computer{120.0, 0.0};
+  scenario.uavs.emplace_back();
+  EXPECT_EQ(slowness(target, scenario, condition).factor, 1.0);  // no energy is simulated
+  scenario.uavs[0].energy.emplace().model.computer = *target.power;
+  EXPECT_EQ(slowness(target, scenario, condition).factor, 1.0);
+  const auto expect_refused = [&] {
+    EXPECT_EQ(
+        thrown_error(ErrorCode::kUsage, [&] { slowness(target, scenario, condition); }).subject(),
+        "/t.toml");
+  };
+  scenario.uavs[0].energy->model.computer.idle_W = 4.0;
+  expect_refused();
+  condition.computers[0].target = target;
+  EXPECT_EQ(slowness(target, scenario, condition).factor, 1.0);
+  target.launcher = {"wrapper"};
+  expect_refused();
 }
 
 }  // namespace

@@ -94,6 +94,12 @@ std::string sentence_of(const Advice& advice, const Verdict& verdict) {
              "which "
              "Tether sees. If that is not possible, fly with `clock = \"wall\"` and "
              "`concurrent = true`, for which all time counts.";
+    case Kind::kCountDisk:
+      return "Keep files out of the flight, or fly with `clock = \"wall\"`, for which all time "
+             "counts.";
+    case Kind::kUnstretch:
+      return "Wait by the client library (`sleep_for`, `sleep_until`, a read with a timeout), or "
+             "fly on the board itself, or with a factor of 1.";
     case Kind::kRunConcurrent:
       return "Fly with `clock = \"wall\"` and `concurrent = true`, for which threads that compute "
              "in parallel count once.";

@@ -52,8 +52,17 @@ bool have_same_radio(const Pace& a, const Pace& b) {
   return is_known && a.radio == b.radio;
 }
 
+bool have_same_power(const Pace& a, const Pace& b) {
+  return std::ranges::equal(a.speed.programs, b.speed.programs,
+                            [](const Speed::Program& one, const Speed::Program& other) {
+                              return one.idle_W == other.idle_W &&
+                                     one.busy_core_W == other.busy_core_W;
+                            });
+}
+
 bool differ_in_speed_only(const Compared& a, const Compared& b) {
-  return a.pace() && b.pace() && have_same_radio(*a.pace(), *b.pace()) && have_same_sensors(a, b);
+  return a.pace() && b.pace() && have_same_radio(*a.pace(), *b.pace()) &&
+         have_same_power(*a.pace(), *b.pace()) && have_same_sensors(a, b);
 }
 
 struct Costs {

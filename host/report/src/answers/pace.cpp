@@ -123,7 +123,9 @@ Speed speed_of(const record::Header& header) {
                               .replay = sut.replay,
                               .board = sut.board,
                               .computer = sut.computer,
-                              .pinned_core = sut.pinned_core});
+                              .pinned_core = sut.pinned_core,
+                              .idle_W = sut.energy ? sut.energy->idle_W : 0.0,
+                              .busy_core_W = sut.energy ? sut.energy->busy_core_W : 0.0});
   return speed;
 }
 

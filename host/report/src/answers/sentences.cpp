@@ -106,6 +106,9 @@ constexpr std::array kDoubts = {
     "the program of {subject} waited {amount:.2g} s on something that Tether does not see",
     "threads of the program of {subject} computed in parallel ({amount:.1f} × the wall time), but "
     "their times are added",
+    "the program of {subject} waited {amount:.2g} s for the disk, which its clock does not count",
+    "the program of {subject} waited {amount:.2g} s, which the clock's factor stretches although "
+    "no computer changes it",
     "the machine{subject} was busy or uneven: its times can be off by up to {percent:.0f} %",
 };
 
@@ -140,6 +143,14 @@ std::string left_out_text(const ConditionVerdict& condition) {
                      joined_with_and(parts));
 }
 
+/// Whether a factor makes more of all time in which no call of the program is held.
+bool stretches_waits(const ConditionVerdict& condition) {
+  return condition.pace &&
+         std::ranges::any_of(condition.pace->speed.programs, [](const Speed::Program& program) {
+           return program.clock.counts_waiting() && program.clock.is_scaled();
+         });
+}
+
 /// What limits the evidence.
 std::string doubts_text(const ConditionVerdict& condition) {
   std::string text;
@@ -156,6 +167,8 @@ std::string doubts_text(const ConditionVerdict& condition) {
   if (missing > 0 && condition.flown + condition.failed > 0)
     text +=
         fmt::format(" {} ha{} no result.", counted(missing, "flight"), missing == 1 ? "s" : "ve");
+  if (stretches_waits(condition) && condition.ruling != Ruling::kUnseen)
+    text += " The factor of the wall clock also stretches what the program waits.";
   if (condition.throttled > 0)
     text += fmt::format(" The board was throttled in {}: it could be faster than this.",
                         counted(condition.throttled, "flight"));

@@ -53,7 +53,9 @@ std::vector<std::string> missed_in(const campaign::TrialResult& trial) {
   const auto has_missed = [](const campaign::SutResult& sut) { return !sut.reached_goal; };
   if (const auto sut = std::ranges::find_if(trial.suts, has_missed);
       missed.empty() && sut != trial.suts.end())
-    missed.push_back("the program's own goal" + (sut->outcome.empty() ? "" : ": " + sut->outcome));
+    missed.push_back((trial.suts.size() > 1 ? fmt::format("the own goal of {}'s program", sut->uav)
+                                            : "the program's own goal") +
+                     (sut->outcome.empty() ? "" : ": " + sut->outcome));
   return missed;
 }
 
@@ -126,8 +128,9 @@ Ruling ruling_of(const ConditionVerdict& verdict, const campaign::ConditionResul
   if (verdict.unsound > 0) return Ruling::kVoid;
   if (verdict.flown == 0) return verdict.failed > 0 ? Ruling::kSetUpFailed : Ruling::kNotFlown;
   if (std::ranges::any_of(trials, is_free_running)) return Ruling::kFreeRunning;
-  if (verdict.doubt(campaign::Doubt::Kind::kUnseenWait) != nullptr ||
-      verdict.doubt(campaign::Doubt::Kind::kParallelThreads) != nullptr)
+  if (std::ranges::any_of(verdict.doubts, [](const FlightsInDoubt& doubt) {
+        return doubt.largest.kind != campaign::Doubt::Kind::kBusyMachine;
+      }))
     return Ruling::kUnseen;
   const bool all = verdict.reached == verdict.flown;
   if (all && std::ranges::none_of(trials, has_limit)) return Ruling::kNothingToDecide;
@@ -194,8 +197,11 @@ std::vector<Advice> advice_on(const ConditionVerdict& lead) {
     case Ruling::kNotFlown:
       break;
     case Ruling::kUnseen:
-      if (lead.doubt(campaign::Doubt::Kind::kUnseenWait) != nullptr)
-        advice.push_back({Kind::kShowWaits});
+      for (const auto& [doubt, kind] :
+           {std::pair{campaign::Doubt::Kind::kUnseenWait, Kind::kShowWaits},
+            {campaign::Doubt::Kind::kDiskWait, Kind::kCountDisk},
+            {campaign::Doubt::Kind::kStretchedWait, Kind::kUnstretch}})
+        if (lead.doubt(doubt) != nullptr) advice.push_back({kind});
       if (lead.doubt(campaign::Doubt::Kind::kParallelThreads) != nullptr)
         advice.push_back({Kind::kRunConcurrent});
       break;

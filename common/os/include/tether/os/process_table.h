@@ -38,7 +38,8 @@ std::vector<pid_t> children_of(pid_t process);
 struct ThreadStates {
   int runnable = 0;  ///< run, or wait for a core
   int waiting = 0;   ///< on something that can take any time: a timer, a lock, a socket
-  int halted = 0;    ///< by a signal or a debugger, or until the disk or the memory has answered
+  int halted = 0;    ///< by a signal or a debugger
+  int on_disk = 0;   ///< wait until the disk, or memory that is on it, has answered
 };
 /// Threads named `left_out` are not counted; nor are processes that have ended.
 ThreadStates thread_states(pid_t process, std::string_view left_out = {});

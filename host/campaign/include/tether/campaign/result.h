@@ -35,7 +35,6 @@ enum class Outcome {
 };
 /// "goal_reached", "goal_missed", "failed".
 std::string_view name(Outcome outcome);
-int exit_code(Outcome outcome);
 
 /// `end` of a trial that was not set up, or whose SUT was lost before its first interaction; other
 /// ends are as in record::Footer.
@@ -147,6 +146,8 @@ struct Doubt {
     kUnseenWait,       ///< the program waited on something that Tether does not see; amount: s
     kParallelThreads,  ///< threads computed in parallel, but their times were added; amount: CPU
                        ///< time over wall time, > 1
+    kDiskWait,         ///< the program waited for the disk, which its clock does not count; s
+    kStretchedWait,    ///< the program waited, and a factor made more of it; s, as it was
     kBusyMachine,      ///< the machine was busy or uneven; amount: MachineLoad::block_spread
   };
   Kind kind = Kind::kUnseenWait;
@@ -155,7 +156,7 @@ struct Doubt {
 
   friend bool operator==(const Doubt&, const Doubt&) = default;
 };
-/// "unseen_wait", "parallel_threads", "busy_machine".
+/// "unseen_wait", "parallel_threads", "disk_wait", "stretched_wait", "busy_machine".
 std::string_view name(Doubt::Kind kind);
 
 /// How far a machine on which execution time was measured was from idle and even during a run.
@@ -244,6 +245,8 @@ struct TrialResult {
 
   /// Programs waited or computed in ways that Tether does not see.
   bool has_unseen_time() const;
+  /// That of `outcome`; 3 as well if its times say nothing.
+  int exit_code() const;
 
   /// nullptr if there is no metric of that name.
   const MetricValue* find_metric(std::string_view metric) const;

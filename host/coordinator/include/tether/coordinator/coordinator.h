@@ -94,14 +94,16 @@ struct Ending {
 
 /// What the threads of a SUT do at one instant.
 struct ThreadStates {
-  int runnable = 0;        ///< run, or wait for a core
-  bool is_halted = false;  ///< one is stopped by a debugger or a signal, or waits for the disk
+  int runnable = 0;         ///< run, or wait for a core
+  bool is_halted = false;   ///< one is stopped by a debugger or a signal
+  bool is_on_disk = false;  ///< one waits for the disk
 };
 
 /// What the threads of a SUT did while it should have computed: each look counts for the WT until
 /// the next one. Waiting that is an interaction is not part of it.
 struct SutLooks {
-  Duration waiting{0};         ///< none was runnable, and none halted
+  Duration waiting{0};         ///< none was runnable, halted, or on the disk
+  Duration on_disk{0};         ///< none was runnable or halted, and one on the disk
   Duration computing{0};       ///< some were runnable
   Duration of_all_threads{0};  ///< the same, added up over them
 
@@ -115,7 +117,7 @@ struct SutReport {
   std::string sut;                     ///< its name from the Hello, printable; empty: never joined
   std::optional<link::Finish> finish;  ///< its own report; the outcome is printable
   ExecTime et;                         ///< its ET at the end of the run
-  SutLooks looks{};                    ///< under the barrier, if its clock is not `wall`
+  SutLooks looks{};  ///< under the barrier, unless its clock counts all waiting as it is
 };
 
 struct RunReport {

@@ -39,6 +39,7 @@ struct Speed {
     std::optional<record::ReplayInfo> replay{};  ///< of a replayed clock
     std::string board{}, computer{};             ///< as in record::SutInfo
     std::optional<int> pinned_core{};
+    double idle_W = 0.0, busy_core_W = 0.0;  ///< of the computer; 0: energy is not simulated
     friend bool operator==(const Program&, const Program&) = default;
   };
   std::vector<Program> programs{};  ///< in the record's order

@@ -130,6 +130,8 @@ struct Advice {
     kFlyRest,        ///< the campaign is not complete
     kReadAudit,      ///< subject: the condition
     kShowWaits,      ///< the program waits unseen
+    kCountDisk,      ///< it waits for the disk
+    kUnstretch,      ///< a factor stretches its waiting
     kRunConcurrent,  ///< its threads compute in parallel
     kCoolBoard,      ///< subject: the condition
     kSpeedUpStage,   ///< subject: the stage

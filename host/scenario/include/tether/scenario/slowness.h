@@ -7,7 +7,7 @@
 
 namespace tether::scenario {
 
-/// How many times as long a target computes as the computer of a condition.
+/// How many times as long a target computes as the computer of a condition of the scenario.
 struct Slowness {
   double factor = 1.0;
   std::optional<std::pair<double, double>> bounds{};  ///< none: not known
@@ -15,7 +15,8 @@ struct Slowness {
 
 /// By the factors of their clocks. Of counted targets, by their costs: the bounds are the least and
 /// the greatest ratio of the costs of one kind of work, so that they hold for every program.
-/// @throws Error(kUsage) about the target's file, if the two cannot be compared.
-Slowness slowness(const Target& target, const Condition& condition);
+/// @throws Error(kUsage) about the target's file, if the two cannot be compared, or differ in more
+/// than in speed: in their launcher or, where energy is simulated, in their power.
+Slowness slowness(const Target& target, const Scenario& scenario, const Condition& condition);
 
 }  // namespace tether::scenario
