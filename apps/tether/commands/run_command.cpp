@@ -92,7 +92,7 @@ int run_and_print(const RunOptions& options, const std::stop_token& stop) {
                        os::terminal_columns(STDERR_FILENO) > 0;
   if (result.outcome == campaign::Outcome::kFailed && !is_read)
     complain("tether: " + result.reason);
-  return result.exit_code();
+  return campaign::exit_code(result);
 }
 
 }  // namespace

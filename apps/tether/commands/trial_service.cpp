@@ -40,7 +40,7 @@ runner::TrialService trial_service(sim::WorldStore& worlds) {
                       runner::run_trial(spec, find_back_end, observer, interrupt.token());
                   if (result.outcome == campaign::Outcome::kFailed)
                     complain("tether: " + result.reason);
-                  return result.exit_code();
+                  return campaign::exit_code(result);
                 });
               }};
 }

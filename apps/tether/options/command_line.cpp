@@ -35,8 +35,8 @@ namespace {
 using Action = std::function<int(const std::stop_token& stop)>;
 
 constexpr const char* kFooter =
-    R"(Exit codes: 0 goal reached, 1 goal missed, 2 wrong use or a bad file, 3 set-up failed, or no answer
-because a program waited or computed in ways that Tether does not see.
+    R"(Exit codes: 0 goal reached, 1 goal missed, 2 wrong use or a bad file, 3 set-up failed, or no
+answer because a program waited or computed in ways that Tether does not see.
 
 Examples:
   tether run face_anchor
@@ -270,8 +270,8 @@ void add_size_command(CLI::App& program, Action& action) {
   add_reading_options(*command, options->reading);
   command->footer(
       R"(Exit codes: 0 every --target is sufficient, or none is given, some computer of --between is, and
-the answer is as narrow as --interval asks (of UAVs: decided), 1 otherwise, 2 wrong use or a bad file, 3 interrupted,
-or flights failed.
+the answer is as narrow as --interval asks (of UAVs: decided), 1 otherwise, 2 wrong use or a bad
+file, 3 interrupted, or flights failed.
 
 Examples:
   tether size face_anchor --condition target

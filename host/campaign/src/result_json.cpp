@@ -330,9 +330,13 @@ std::string_view name(Outcome outcome) {
   return kOutcomes[static_cast<std::size_t>(outcome)];
 }
 
-int TrialResult::exit_code() const {
+int exit_code(Outcome outcome) {
   constexpr std::array kCodes = {0, 1, 3};
-  return has_unseen_time() ? 3 : kCodes[static_cast<std::size_t>(outcome)];
+  return kCodes[static_cast<std::size_t>(outcome)];
+}
+
+int exit_code(const TrialResult& result) {
+  return exit_code(result.has_unseen_time() ? Outcome::kFailed : result.outcome);
 }
 
 bool TrialResult::has_unseen_time() const {
@@ -362,7 +366,7 @@ std::string to_json(const TrialResult& result) {
   json.update(Json{{"real_time_factor", result.real_time_factor},
                    {"profiles", result.profiles},
                    {"outcome", name(result.outcome)},
-                   {"exit_code", result.exit_code()},
+                   {"exit_code", exit_code(result.outcome)},
                    {"end", result.end},
                    {"reason", result.reason},
                    {"metrics", json_of(result.metrics)},

@@ -337,7 +337,7 @@ TEST_F(MakeResult, MissesTheGoalBeyondALimit) {
   record::Record record = finished_record();
   record.interactions[0].message.request_at = ExecTime(seconds(31));
   EXPECT_EQ(make(record, kReached).outcome, Outcome::kGoalMissed);
-  EXPECT_EQ(make(record, kReached).exit_code(), 1);
+  EXPECT_EQ(exit_code(make(record, kReached).outcome), 1);
   EXPECT_EQ(make(record, kReached).reason, "time_required is 31 s, beyond its limit of 30 s");
   record.interactions[0].message.request_at = ExecTime(seconds(30) + std::chrono::nanoseconds(1));
   EXPECT_EQ(make(record, kReached).reason,
@@ -355,7 +355,7 @@ TEST_F(MakeResult, ALostPartIsAFailureWithoutMetrics) {
     record.footer->end = end;
     record.footer->reason = "because";
     const TrialResult result = make(record, kReached);
-    EXPECT_EQ(result.exit_code(), 3) << end;
+    EXPECT_EQ(exit_code(result.outcome), 3) << end;
     EXPECT_EQ(result.reason, "because");
     EXPECT_EQ(result.end, end);
     EXPECT_FALSE(result.find_metric("time_required")->value);

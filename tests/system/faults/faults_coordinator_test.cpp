@@ -101,12 +101,14 @@ class Stopped : public RunTest {
   }
   /// Good, with a note, and as if nothing had been.
   void expect_good(const Command& command) {
-    EXPECT_EQ(tether_->wait(60s).code, 0) << tether_->err();
+    tether_->wait(60s);
     EXPECT_TRUE(wait_until_gone(mark_));
+    EXPECT_EQ(result()["outcome"], "goal_reached") << tether_->err();
     EXPECT_TRUE(result()["this_run"].contains("notes"));
     const auto stopped = folder_ / "stopped";
     std::filesystem::rename(out_, stopped);
-    EXPECT_EQ(run(command).code, 0);
+    run(command);
+    EXPECT_EQ(result()["outcome"], "goal_reached");
     expect_same_runs(stopped, out_);
   }
 

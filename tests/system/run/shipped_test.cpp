@@ -169,7 +169,8 @@ class ShippedFlight : public testing::TestWithParam<Flight> {
 TEST_P(ShippedFlight, Flies) {
   if (!GetParam().skipped.empty()) GTEST_SKIP() << GetParam().skipped;
   const auto& [output, result] = landed_.at(GetParam().name());
-  ASSERT_LE(output.code, 1) << output.err;
+  ASSERT_FALSE(result.is_null()) << output.err;
+  EXPECT_NE(result["outcome"], "failed") << result["reason"];
   EXPECT_TRUE(result["audit"]["passed"]) << result["audit"]["summary"];
   EXPECT_GT(result["sync"]["interactions"], 0);
 }

@@ -15,11 +15,11 @@ class Unseen : public testing::Test {
                            const std::vector<Substitution>& substitutions = {}) {
     const auto scenario = write_hover_scenario(folder_.path(), mode, substitutions);
     const Output flown = run(tether({"run", scenario, "--force", "--out", folder_ / "out"}));
-    EXPECT_EQ(flown.code, 0) << flown.err;
     const auto this_run = read_result(folder_ / "out").at("this_run");
     nlohmann::json doubts = nlohmann::json::array();
     for (const auto& doubt : this_run.value("doubts", nlohmann::json::array()))
       if (doubt.at("kind") != "busy_machine") doubts.push_back(doubt);
+    EXPECT_EQ(flown.code, doubts.empty() ? 0 : 3) << flown.err;
     return doubts;
   }
   void expect(const std::string& kind, double least, double most, const nlohmann::json& doubts) {

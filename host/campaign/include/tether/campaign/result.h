@@ -35,6 +35,7 @@ enum class Outcome {
 };
 /// "goal_reached", "goal_missed", "failed".
 std::string_view name(Outcome outcome);
+int exit_code(Outcome outcome);
 
 /// `end` of a trial that was not set up, or whose SUT was lost before its first interaction; other
 /// ends are as in record::Footer.
@@ -245,14 +246,14 @@ struct TrialResult {
 
   /// Programs waited or computed in ways that Tether does not see.
   bool has_unseen_time() const;
-  /// That of `outcome`; 3 as well if its times say nothing.
-  int exit_code() const;
 
   /// nullptr if there is no metric of that name.
   const MetricValue* find_metric(std::string_view metric) const;
 
   friend bool operator==(const TrialResult&, const TrialResult&) = default;
 };
+/// Of a command: that of the outcome; 3 as well if the trial has unseen time.
+int exit_code(const TrialResult& result);
 
 /// "replayed (resampled) from board.timing, recorded 2026-11-20T10:00:00Z (3 days before) on pi";
 /// empty if no time was replayed.
