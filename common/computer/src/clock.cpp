@@ -9,7 +9,7 @@ namespace tether::computer {
 namespace {
 
 /// What follows "NAME*" in a clock's text.
-enum class Rate { kNone, kFactor, kComputing_ms };
+enum class Rate { kNone, kFactor, kComputing };
 
 struct Traits {
   std::string_view name;
@@ -25,7 +25,7 @@ constexpr Traits kTraits[] = {
     // name         rate                 repeats  parallel  waiting  barrier
     {"wall", Rate::kFactor, false, true, true, false},
     {"cpu", Rate::kFactor, false, false, false, false},
-    {"scripted", Rate::kComputing_ms, true, true, false, true},
+    {"scripted", Rate::kComputing, true, true, false, true},
     {"unstamped", Rate::kNone, false, false, true, true},
     {"counted", Rate::kNone, true, false, false, true},
     {"replayed", Rate::kNone, true, false, false, true},
@@ -79,7 +79,7 @@ std::string Clock::text() const {
   switch (traits(kind).rate) {
     case Rate::kFactor:
       return is_scaled() ? clock + "*" + rate_text(factor) : clock;
-    case Rate::kComputing_ms:
+    case Rate::kComputing:
       return clock + "*" + rate_text(static_cast<double>(computing.count()) / 1e6);
     case Rate::kNone:
       break;
@@ -110,11 +110,11 @@ std::optional<Clock> clock_of(const std::string& text) {
   Clock clock{.kind = *kind};
   const Rate rate = traits(*kind).rate;
   if (star == std::string::npos)
-    return rate == Rate::kComputing_ms ? std::nullopt : std::optional(clock);
+    return rate == Rate::kComputing ? std::nullopt : std::optional(clock);
   const auto value = parse_rate(text.substr(star + 1));
   if (rate == Rate::kNone || !value) return std::nullopt;
   if (rate == Rate::kFactor) clock.factor = *value;
-  if (rate == Rate::kComputing_ms) clock.computing = duration_from_seconds(*value * 1e-3);
+  if (rate == Rate::kComputing) clock.computing = duration_from_seconds(*value * 1e-3);
   return clock;
 }
 

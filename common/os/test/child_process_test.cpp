@@ -168,8 +168,9 @@ TEST_F(Child, AdoptsItsOrphansIfAsked) {
   for (const bool adopts : {false, true}) {
     const auto number = scratch_.path(adopts ? "adopted" : "not_adopted");
     ChildCommand command =
-        shell("(setsid sh -c 'until [ -e " + number.string() + ".go ]; do :; done' & echo $! >" +
-              number.string() + "); touch " + number.string() + ".ready; exec sleep 600");
+        shell("(setsid sh -c 'until [ -e " + number.string() + ".go ] || [ ! -d " +
+              scratch_.path().string() + " ]; do :; done' & echo $! >" + number.string() +
+              "); touch " + number.string() + ".ready; exec sleep 600");
     command.adopts_orphans = adopts;
     const ChildProcess child(command);
     while (!std::filesystem::exists(number.string() + ".ready")) std::this_thread::yield();

@@ -27,9 +27,10 @@ class Looks : public CoordinatorTest {
     };
   }
   SutLooks of_silent_sut(computer::ClockKind clock = computer::ClockKind::kScripted,
-                         bool concurrent = false) {
+                         bool concurrent = false, double factor = 1.0) {
     make();
     link::Hello h = hello("", clock);
+    h.clock.factor = factor;
     h.concurrent = concurrent;
     server_->add_sut(h, {});
     now_ = {};
@@ -73,12 +74,17 @@ TEST_F(Looks, TellWaitingForTheDiskFromOther) {
   EXPECT_NEAR(to_seconds(looks.on_disk), 2.0, 0.05);
 }
 
+// A factor makes more of it than it is.
+TEST_F(Looks, FindWaitingThatAFactorOfTheWallClockStretches) {
+  EXPECT_GT(of_silent_sut(computer::ClockKind::kWall, false, 6.0).waiting, 0s);
+}
+
 TEST_F(Looks, IgnoreSutsWhoseTimePassesWhileTheyWait) {
   for (const auto clock : {computer::ClockKind::kWall, computer::ClockKind::kUnstamped}) {
     EXPECT_EQ(of_silent_sut(clock).waiting, 0s);
     EXPECT_EQ(looked_, 0);
   }
-  of_silent_sut(computer::ClockKind::kWall, true);
+  of_silent_sut(computer::ClockKind::kWall, true, 6.0);
   EXPECT_EQ(looked_, 0);
   set_free_running(1.0);
   of_silent_sut();
