@@ -94,14 +94,7 @@ std::optional<FileKind> kind_of(const fs::path& path) {
 
 void require_kind(const fs::path& path, FileKind wanted) {
   const auto kind = kind_of(path);
-  if (kind == wanted) return;
-  std::error_code ignored;
-  if (wanted == FileKind::kRecord && !fs::exists(path, ignored))
-    throw Error(ErrorCode::kUsage, {path.string()},
-                "there is no such file. Give the record.mcap of a run, which is in the folder that "
-                "`tether run` names")
-        .about(path.string());
-  if (!kind) return;
+  if (!kind || kind == wanted) return;
   const auto& [name, use] = kFileKinds.at(static_cast<std::size_t>(*kind));
   throw Error(
       ErrorCode::kUsage, {path.string()},

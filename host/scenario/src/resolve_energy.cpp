@@ -47,6 +47,12 @@ bool is_supervised(const Scenario& scenario, const Condition& condition, std::si
 
 }  // namespace
 
+const energy::Computer& power_of(const Scenario& scenario, const Condition& condition,
+                                 std::size_t uav) {
+  const auto& target = computer_of(condition, uav).target;
+  return target && target->power ? *target->power : scenario.uavs[uav].energy->model.computer;
+}
+
 void resolve_energy(const Scenario& scenario, const Condition& condition, sim::World& world,
                     const sim::WarningSink& warn) {
   for (std::size_t i = 0; i < scenario.uavs.size(); ++i) {
@@ -62,8 +68,7 @@ void resolve_energy(const Scenario& scenario, const Condition& condition, sim::W
                          uav.name, scenario.uavs[i].placement.model.string()));
       model.battery = *uav.battery;
     }
-    if (const auto& target = computer_of(condition, i).target; target && target->power)
-      model.computer = *target->power;
+    model.computer = power_of(scenario, condition, i);
     require_possible(energy, model, uav, world.gravity_m_s2);
     if (is_supervised(scenario, condition, i))
       warn({Consequence::kMissing, energy.battery_at, "computing",

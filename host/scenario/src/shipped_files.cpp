@@ -132,12 +132,9 @@ std::vector<ShippedFile> ShippedFiles::list(ShippedKind kind) const {
 std::string ShippedFiles::why_none(ShippedKind kind, const std::string& given,
                                    const fs::path& folder) const {
   const Place& place = place_of(kind);
-  for (std::size_t i = 0; i < kPlaces.size(); ++i) {
-    if (!has(static_cast<ShippedKind>(i), given)) continue;
-    const Place& other = kPlaces[i];
-    return fmt::format("'{}' is a shipped {}, not a {}.", given, other.name, place.name) +
-           how_to_use(other, given);
-  }
+  if (const std::string other = what_is(given, fmt::format(", not a {}", place.name));
+      !other.empty())
+    return other;
   const std::string file = given + place.extension;
   std::error_code ignored;
   if (fs::is_regular_file(folder / file, ignored))
@@ -157,10 +154,10 @@ std::string ShippedFiles::why_none(ShippedKind kind, const std::string& given,
       kind == ShippedKind::kTarget ? fmt::format(" A board is ssh://[user@]{}.", given) : "");
 }
 
-std::string ShippedFiles::what_is(const std::string& name) const {
+std::string ShippedFiles::what_is(const std::string& name, const std::string& but) const {
   for (std::size_t i = 0; i < kPlaces.size(); ++i)
     if (has(static_cast<ShippedKind>(i), name))
-      return fmt::format("'{}' is a shipped {}.", name, kPlaces[i].name) +
+      return fmt::format("'{}' is a shipped {}{}.", name, kPlaces[i].name, but) +
              how_to_use(kPlaces[i], name);
   return "";
 }

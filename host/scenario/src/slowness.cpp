@@ -14,11 +14,7 @@ namespace {
 bool has_another_power(const Target& target, const Scenario& scenario, const Condition& condition) {
   if (!target.power) return false;
   for (std::size_t i = 0; i < scenario.uavs.size(); ++i) {
-    if (!scenario.uavs[i].energy) continue;
-    const auto& own = computer_of(condition, i).target;
-    if (*target.power !=
-        (own && own->power ? *own->power : scenario.uavs[i].energy->model.computer))
-      return true;
+    if (scenario.uavs[i].energy && *target.power != power_of(scenario, condition, i)) return true;
   }
   return false;
 }
@@ -37,13 +33,12 @@ std::string why_not_comparable(const Target& target, const Scenario& scenario,
         "cannot be compared with condition \"{}\": one has counted costs, the other "
         "a factor. Use a condition with the clock \"{}\".",
         condition.name, target.clock.kind == computer::ClockKind::kCounted ? "counted" : "cpu");
-  const Computer& computer = computer_of(condition, 0);
-  const bool has_own_launcher = computer.target && !computer.target->emulator;
-  if (!target.emulator && !target.launcher.empty() &&
-      !(has_own_launcher && computer.target->launcher == target.launcher))
+  const auto& own_target = computer_of(condition, 0).target;
+  if (!target.emulator &&
+      target.launcher != (own_target ? own_target->launcher : std::vector<std::string>{}))
     return fmt::format(
-        "has a 'launcher', which condition \"{}\" does not fly with. Give the condition this "
-        "target (`target` in the file), and size it.",
+        "has another 'launcher' than condition \"{}\" flies with, or only one of them has one. "
+        "Give the condition this target (`target` in the file), and size it.",
         condition.name);
   if (has_another_power(target, scenario, condition))
     return fmt::format(

@@ -1,3 +1,5 @@
+#include <utility>
+
 #include <gtest/gtest.h>
 
 #include <tether/base_testing/thrown_error.h>
@@ -85,6 +87,8 @@ TEST(Slowness, IsRefusedWhereTheTargetDiffersInMoreThanSpeed) {
   condition.computers[0].target = target;
   EXPECT_EQ(slowness(target, scenario, condition).factor, 1.0);
   target.launcher = {"wrapper"};
+  expect_refused();
+  std::swap(target.launcher, condition.computers[0].target->launcher);
   expect_refused();
 }
 

@@ -53,10 +53,10 @@ class InputFile {
                               : std::filesystem::is_directory(path, error) ? "it is a folder"
                               : std::filesystem::exists(path, error) ? "it is not a regular file"
                                                                      : "there is no such file";
-      throw Error(
-          ErrorCode::kBadFile, FileLocation{path.string(), 0},
-          "cannot read this record: " + why +
-              (std::filesystem::exists(path, error) ? ". Give the record.mcap of a run" : ""));
+      throw Error(ErrorCode::kBadFile, FileLocation{path.string(), 0},
+                  "cannot read this record: " + why +
+                      ". Give the record.mcap of a run, which is in the folder that `tether run` "
+                      "names");
     }
   }
 

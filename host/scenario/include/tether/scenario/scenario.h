@@ -187,6 +187,11 @@ Condition pick_condition(const Scenario& scenario, const std::string& wanted);
 /// The computer on which that UAV's SUT runs.
 const Computer& computer_of(const Condition& condition, std::size_t uav);
 
+/// What that computer draws: its target's power, else that of the UAV's energy file.
+/// @pre the UAV has one.
+const energy::Computer& power_of(const Scenario& scenario, const Condition& condition,
+                                 std::size_t uav);
+
 /// Whether several SUTs share the cores of that computer.
 bool is_shared(const Condition& condition, std::size_t computer);
 

@@ -64,8 +64,8 @@ class ShippedFiles {
   std::filesystem::path find(ShippedKind kind, const std::string& given) const;
 
   /// "'room' is a shipped world. To use it, type: tether world check room."; empty: no file that is
-  /// shipped has the name.
-  std::string what_is(const std::string& name) const;
+  /// shipped has the name. `but`: what follows the kind.
+  std::string what_is(const std::string& name, const std::string& but = "") const;
 
  private:
   std::string why_none(ShippedKind kind, const std::string& given,
