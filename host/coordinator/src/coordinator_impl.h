@@ -69,6 +69,7 @@ class Coordinator::Impl {
   Duration until_look() const;
   bool is_looked_at(const Session& session) const;
   void look_at_suts();
+  void end_unseen_wait(const Session& session);
 
   // Incoming.
   void on_event(const link::Event& event);

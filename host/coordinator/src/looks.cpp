@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <vector>
 
+#include <fmt/format.h>
+
 /// Looks at what the threads of SUTs do while they should compute: an estimate, by samples, of how
 /// long a SUT waits on what is no interaction, and on how many threads it computes. Only the report
 /// has it, because it is measured.
@@ -75,8 +77,20 @@ void Coordinator::Impl::look_at_suts() {
     for (const link::Event& event : events) on_event(event);
   }
   for (const Look& look : looks)
-    if (is_looked_at(look.session) && look.session.computes_since == look.since)
+    if (is_looked_at(look.session) && look.session.computes_since == look.since) {
       look.session.looks.add(look.states, represented);
+      end_unseen_wait(look.session);
+    }
+}
+
+// A program that waits in small steps computes a little between them, and that is a sign of life.
+void Coordinator::Impl::end_unseen_wait(const Session& session) {
+  const Duration waited = session.looks.waiting - session.waited_before;
+  if (waited <= options_.hang_limit) return;
+  end({RunEnd::kSutHung,
+       fmt::format("SUT \"{}\" of UAV \"{}\" timed out: after its last call it waited {} s "
+                   "(hang_limit_s) on something that Tether does not see",
+                   session.hello.sut, session.uav_name, to_seconds(options_.hang_limit))});
 }
 
 }  // namespace tether::coordinator

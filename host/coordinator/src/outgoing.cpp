@@ -89,6 +89,7 @@ void Coordinator::Impl::reply(Session& session, std::size_t open_index, SimTime 
   watchdog_.moved(entry.wall_at_release);
   computes_from(session, entry.reply_at);
   session.computes_since = entry.wall_at_release;
+  session.waited_before = session.looks.waiting;
   if (session.timer) session.timer->resume(entry.wall_at_release, entry.reply_at);
   // A CPU clock adds what child processes computed during the call.
   if (session.plausibility)

@@ -73,6 +73,7 @@ struct Session {
   WallTime computes_since{};  ///< its last reply was sent
   bool is_hidden = false;     ///< RunHooks::threads_of does not know it
   SutLooks looks;
+  Duration waited_before{};  ///< of `looks`, when its last reply was sent
 
   std::optional<ExecTime> stopped_at;  ///< ET of the last stop in the record
   ExecTime resumed_at{};               ///< ET of its last reply, from which on it computes

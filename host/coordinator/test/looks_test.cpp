@@ -2,6 +2,7 @@
 
 #include <chrono>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 /// Looks at the threads of a SUT while it computes. Each reading of the clock takes 0.1 ms here.
@@ -53,6 +54,21 @@ TEST_F(Looks, AddUpToTheTimeThatASutWaits) {
   EXPECT_EQ(looks.waiting, 0s);
   EXPECT_NEAR(to_seconds(looks.computing), 2.0, 0.05);
   EXPECT_EQ(looks.of_all_threads, 2 * looks.computing);
+}
+
+// It sends progress, because it computes a little between its sleeps.
+TEST_F(Looks, EndARunWhoseSutWaitsLongerThanTheHangLimit) {
+  options_.hang_limit = 1s;
+  make();
+  const link::PeerId peer = add_silent();
+  ExecTime reached{};
+  at_look_ = [&] { server_->deliver(peer, link::Progress{.reached = reached += 1us}); };
+  const RunReport report = run();
+  EXPECT_EQ(report.end, RunEnd::kSutHung);
+  EXPECT_THAT(report.reason,
+              testing::HasSubstr("after its last call it waited 1 s (hang_limit_s) on something "
+                                 "that Tether does not see"));
+  EXPECT_NEAR(to_seconds(report.wall), 1.0, 0.05);
 }
 
 // What happened in the second in which the coordinator did not look is not known.
