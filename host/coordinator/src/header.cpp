@@ -127,6 +127,7 @@ record::Header Coordinator::Impl::make_header() const {
          .build = parts_of(session.hello),
          .replay = options_.uavs[session.uav].replayed_from,
          .computer = options_.uavs[session.uav].computer,
+         .launcher = options_.uavs[session.uav].launcher,
          .extent_m = extent_m(uav.body),
          .max_angular_acceleration_rad_s2 = max_angular_acceleration_rad_s2(uav.airframe),
          .energy = describe_energy(uav, world().gravity_m_s2)});

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <tether/base/error.h>
 #include <tether/base/version.h>
@@ -152,6 +153,8 @@ coordinator::RunOptions run_options(const TrialSpec& spec, const TrialInputs& in
     const scenario::Computer& own = computer_of(spec.condition, i);
     uav.clock = own.clock;
     uav.computer = own.name;
+    if (own.target && !own.target->emulator)
+      uav.launcher = fmt::format("{}", fmt::join(own.target->launcher, " "));
     uav.cores = spec.sut_place(i) == SutPlace::kThisMachine ? known_cores() : 0;
     if (inputs.replayed.replays.empty()) continue;
     uav.replay = inputs.replayed.replays[i];

@@ -52,17 +52,18 @@ bool have_same_radio(const Pace& a, const Pace& b) {
   return is_known && a.radio == b.radio;
 }
 
-bool have_same_power(const Pace& a, const Pace& b) {
-  return std::ranges::equal(a.speed.programs, b.speed.programs,
+/// What starts the programs, and what their computers draw.
+bool have_same_set_up(const Speed& a, const Speed& b) {
+  return std::ranges::equal(a.programs, b.programs,
                             [](const Speed::Program& one, const Speed::Program& other) {
-                              return one.idle_W == other.idle_W &&
+                              return one.launcher == other.launcher && one.idle_W == other.idle_W &&
                                      one.busy_core_W == other.busy_core_W;
                             });
 }
 
 bool differ_in_speed_only(const Compared& a, const Compared& b) {
   return a.pace() && b.pace() && have_same_radio(*a.pace(), *b.pace()) &&
-         have_same_power(*a.pace(), *b.pace()) && have_same_sensors(a, b);
+         have_same_set_up(a.pace()->speed, b.pace()->speed) && have_same_sensors(a, b);
 }
 
 struct Costs {
@@ -213,8 +214,9 @@ MissReason reason_of(const Compared& missed, const std::vector<Compared>& all,
   std::ranges::stable_sort(faster, std::greater<>{}, [&](const Compared* other) {
     return costs_of(*missed.pace(), *other->pace())->other_s;
   });
+  const bool is_comparable = missed.pace() && !missed.pace()->speed.stretches_unseen_waits();
   for (const Compared* other : faster)
-    if (reaches_more_often(*other->verdict, *missed.verdict, comparisons))
+    if (is_comparable && reaches_more_often(*other->verdict, *missed.verdict, comparisons))
       return {Evidence::kFasterReaches, other->label, comparison_text(*other, missed)};
   if (const std::string cause = in_each(missed, known_cause); !cause.empty())
     return {Evidence::kKnownCause, "", cause};

@@ -123,6 +123,8 @@ Speed speed_of(const record::Header& header) {
                               .replay = sut.replay,
                               .board = sut.board,
                               .computer = sut.computer,
+                              .launcher = sut.launcher,
+                              .concurrent = sut.concurrent,
                               .pinned_core = sut.pinned_core,
                               .idle_W = sut.energy ? sut.energy->idle_W : 0.0,
                               .busy_core_W = sut.energy ? sut.energy->busy_core_W : 0.0});
@@ -141,6 +143,12 @@ bool Speed::is_instant() const {
   return is_scripted() && std::ranges::all_of(programs, [](const Program& program) {
            return program.clock.computing <= kNoTime;
          });
+}
+
+bool Speed::stretches_unseen_waits() const {
+  return std::ranges::any_of(programs, [](const Program& program) {
+    return program.concurrent && program.clock.counts_waiting() && program.clock.is_scaled();
+  });
 }
 
 std::optional<double> Pace::headroom() const {

@@ -87,7 +87,8 @@ std::string missed_goals_text(const ConditionVerdict& condition) {
 constexpr std::array kMissReasons = {
     " “{condition}” {text}.",
     " {text}.",
-    " No faster condition was flown, so whether speed matters is not known.",
+    " No faster condition that is otherwise the same was flown, so whether speed matters is not "
+    "known.",
     " “{condition}” is faster and {text}. That does not show whether speed matters.",
     " The reason: {text}.",
     " Computing takes no time there, so a faster computer does not help.",
@@ -114,10 +115,10 @@ constexpr std::array kDoubts = {
 
 std::string doubt_text(const FlightsInDoubt& doubt, const ConditionVerdict& condition) {
   const campaign::Doubt& largest = doubt.largest;
+  const std::size_t ended = condition.flown + condition.failed;
   const std::string where =
-      condition.flown > 1
-          ? fmt::format(", at most, in {} of {}", doubt.flights, counted(condition.flown, "flight"))
-          : "";
+      ended > 1 ? fmt::format(", at most, in {} of {}", doubt.flights, counted(ended, "flight"))
+                : "";
   const bool is_of_uav = largest.kind != campaign::Doubt::Kind::kBusyMachine;
   const std::string subject = is_of_uav || largest.subject.empty()
                                   ? largest.subject
@@ -143,14 +144,6 @@ std::string left_out_text(const ConditionVerdict& condition) {
                      joined_with_and(parts));
 }
 
-/// Whether a factor makes more of all time in which no call of the program is held.
-bool stretches_waits(const ConditionVerdict& condition) {
-  return condition.pace &&
-         std::ranges::any_of(condition.pace->speed.programs, [](const Speed::Program& program) {
-           return program.clock.counts_waiting() && program.clock.is_scaled();
-         });
-}
-
 /// What limits the evidence.
 std::string doubts_text(const ConditionVerdict& condition) {
   std::string text;
@@ -167,7 +160,7 @@ std::string doubts_text(const ConditionVerdict& condition) {
   if (missing > 0 && condition.flown + condition.failed > 0)
     text +=
         fmt::format(" {} ha{} no result.", counted(missing, "flight"), missing == 1 ? "s" : "ve");
-  if (stretches_waits(condition) && condition.ruling != Ruling::kUnseen)
+  if (condition.pace && condition.pace->speed.stretches_unseen_waits())
     text += " The factor of the wall clock also stretches what the program waits.";
   if (condition.throttled > 0)
     text += fmt::format(" The board was throttled in {}: it could be faster than this.",

@@ -79,13 +79,13 @@ void count(ConditionVerdict& verdict, const campaign::TrialResult& trial) {
     if (verdict.unsound++ == 0)
       verdict.reason = trial.audit && !trial.audit->passed ? trial.audit->summary : trial.reason;
   }
+  for (const campaign::Doubt& doubt : trial.this_run.doubts) add(verdict.doubts, doubt);
   if (trial.outcome == campaign::Outcome::kFailed) {
     verdict.was_interrupted |= trial.end == campaign::kEndInterrupted;
     if (verdict.failed++ == 0 && verdict.unsound == 0) verdict.reason = trial.reason;
     return;
   }
   ++verdict.flown;
-  for (const campaign::Doubt& doubt : trial.this_run.doubts) add(verdict.doubts, doubt);
   for (const Warning& warning : trial.warnings)
     if (const std::string line = warning.subject + " " + warning.message;
         warning.can_change_verdict && warning.consequence != Consequence::kDoubtfulStart &&
@@ -193,9 +193,9 @@ std::vector<Advice> advice_on(const ConditionVerdict& lead) {
     case Ruling::kVoid:
       advice.push_back({Kind::kReadAudit, lead.condition});
       break;
-    case Ruling::kSetUpFailed:
     case Ruling::kNotFlown:
       break;
+    case Ruling::kSetUpFailed:
     case Ruling::kUnseen:
       for (const auto& [doubt, kind] :
            {std::pair{campaign::Doubt::Kind::kUnseenWait, Kind::kShowWaits},
@@ -210,7 +210,9 @@ std::vector<Advice> advice_on(const ConditionVerdict& lead) {
       advice.push_back({Kind::kFindThreshold, lead.condition});
       break;
     case Ruling::kGoalMissed:
-      if (lead.miss->evidence == MissReason::Evidence::kFasterUndecided)
+      if (lead.pace && lead.pace->speed.stretches_unseen_waits())
+        advice.push_back({Kind::kUnstretch});
+      else if (lead.miss->evidence == MissReason::Evidence::kFasterUndecided)
         advice.push_back({Kind::kCompareMore, lead.condition});
       else
         advice.push_back({Kind::kTryFaster, lead.condition});

@@ -51,11 +51,11 @@ void fail(Case& one, const campaign::TrialResult& trial, const std::string& why)
 Case outcome_case(const campaign::TrialResult& trial) {
   Case one{.name = "outcome", .time_s = to_seconds(trial.this_run.wall), .type = "outcome"};
   if (trial.outcome != campaign::Outcome::kGoalReached) fail(one, trial, trial.reason);
-  const campaign::TrialResult* const only = &trial;
-  if (const auto unseen = unseen_answer(trial.condition, {&only, 1})) {
-    one.kind = "error";
-    one.message = unseen->lead + unseen->rest;
-  }
+  if (const campaign::TrialResult* const only = &trial; trial.has_unseen_time())
+    if (const auto unseen = unseen_answer(trial.condition, {&only, 1})) {
+      one.kind = "error";
+      one.message = unseen->lead + unseen->rest;
+    }
   one.output = trial.reason + "\n";
   for (const std::string& note : trial.this_run.notes) one.output += "note: " + note + "\n";
   return one;

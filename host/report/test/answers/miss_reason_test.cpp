@@ -69,13 +69,13 @@ class MissReasons : public testing::Test {
 TEST_F(MissReasons, AreNotKnownWithoutAReference) {
   const std::size_t board = add("board", 0, 5, measured(0.2));
   EXPECT_EQ(ruling(board), Ruling::kGoalMissed);
-  EXPECT_THAT(
-      verdict_text({verdict()}, Markup::kPlain),
-      testing::AllOf(
-          StartsWith("Goal missed: on “board” 5 of 5 flights miss the goal (not met: time "
-                     "required ≤ 5 s (5 flights))"),
-          HasSubstr("No faster condition was flown, so whether speed matters is not known."),
-          HasSubstr("To see whether speed matters, fly on a faster computer")));
+  EXPECT_THAT(verdict_text({verdict()}, Markup::kPlain),
+              testing::AllOf(
+                  StartsWith("Goal missed: on “board” 5 of 5 flights miss the goal (not met: time "
+                             "required ≤ 5 s (5 flights))"),
+                  HasSubstr("No faster condition that is otherwise the same was flown, so whether "
+                            "speed matters is not known."),
+                  HasSubstr("To see whether speed matters, fly on a faster computer")));
   paces_[board].reset();
   EXPECT_EQ(ruling(board), Ruling::kGoalMissed);
 }
@@ -105,8 +105,28 @@ TEST_F(MissReasons, AreSpeedIfAFasterConditionReachesTheGoal) {
   paces_[host]->radio.exponent = 3.0;
   expect_unknown("another radio");
   paces_[host]->radio = paces_[board]->radio = {};
+  program(board).launcher = "wrapper --wrong";
+  expect_unknown("another launcher");
+  program(board).launcher.clear();
   paces_[host]->median_s = 0.3;
   expect_unknown("not faster");
+}
+
+// The sleeping of one thread takes longer by the factor, and none of the board's would.
+TEST_F(MissReasons, AreNotKnownIfAFactorAlsoStretchesWhatConcurrentProgramsWait) {
+  const std::size_t board = add("board", 0, 5, measured(0.2));
+  add("host", 5, 0, measured(0.02));
+  program(board).concurrent = true;
+  program(board).clock = {computer::ClockKind::kWall, 10.0};
+  EXPECT_EQ(ruling(board), Ruling::kGoalMissed);
+  EXPECT_THAT(verdict_text({verdict()}, Markup::kPlain),
+              testing::AllOf(HasSubstr("“host” is faster and is fast enough so far: an image costs "
+                                       "20 ms instead of 200 ms, 10.0 × less. That does not show "
+                                       "whether speed matters. The factor of the wall clock also "
+                                       "stretches what the program waits."),
+                             HasSubstr("fly on the board itself, or with a factor of 1")));
+  program(board).clock.factor = 1.0;
+  EXPECT_EQ(ruling(board), Ruling::kNotFastEnough);
 }
 
 // 2 of 2 against 0 of 2 is chance, unless all flights of each are one.

@@ -169,7 +169,8 @@ TEST(Verdict, SaysTheAnswerWithItsEvidenceAndWhatToDo) {
   EXPECT_EQ(verdict_text(verdicts, Markup::kMarkdown),
             "**Goal missed**: on “target” 5 of 10 flights miss the goal (not met: time required "
             "≤ 5 s (5 flights)); the camera is read 9.0 times a second instead of 30, and “detect” "
-            "takes 81 % of the computing time. No faster condition was flown, so whether speed "
+            "takes 81 % of the computing time. No faster condition that is otherwise the same was "
+            "flown, so whether speed "
             "matters is not known.\n\n"
             "- To see whether speed matters, fly on a faster computer: `tether size turn "
             "--condition target --between 0.1,2`\n"
@@ -363,6 +364,11 @@ TEST(Verdict, OfAFlightThatFailedHasOneCauseAndOneAction) {
   trial.reason = "interrupted";
   EXPECT_EQ(verdict_text({verdict_of(scenario)}, Markup::kPlain),
             "No answer: interrupted.\n  → You stopped the flight: fly again.\n\n");
+  trial.this_run.doubts = {{campaign::Doubt::Kind::kUnseenWait, "uav1", 7.0}};
+  EXPECT_THAT(verdict_text({verdict_of(scenario)}, Markup::kPlain),
+              testing::AllOf(StartsWith("No answer: interrupted. The program of uav1 waited 7 s on "
+                                        "something that Tether does not see.\n"),
+                             HasSubstr("Wait by the client library")));
 }
 
 TEST(Verdict, CountsCopiesOfAFlightOnce) {

@@ -117,7 +117,7 @@ TEST(RunText, BeginsWithTheAnswer) {
   result.outcome = campaign::Outcome::kGoalMissed;
   EXPECT_THAT(run_text(result, scratch.path("run")),
               testing::StartsWith("Goal missed: on “host” the flight does not meet time required ≤ "
-                                  "3 s. No faster condition was flown"));
+                                  "3 s. No faster condition that is otherwise the same was flown"));
 }
 
 TEST(RunText, NamesTheRecordOnlyIfThereIsOne) {

@@ -41,6 +41,7 @@ struct UavOptions {
   /// kCounted or kReplayed.
   std::optional<std::size_t> board{};
   std::string computer{};  ///< where its SUT runs, for messages; empty: all run on the same
+  std::string launcher{};  ///< words before its command, for the record
   /// The core on which it runs; then only pinned programs run there.
   std::optional<int> pinned_core{};
 };

@@ -343,6 +343,7 @@ struct SutInfo {
   /// Name of the scenario's computer on which the SUT runs, shared or not. Empty: the scenario
   /// describes none, or it is a record of Tether 0.1.0.
   std::string computer{};
+  std::string launcher{};  ///< words of the target before the SUT's command; empty: none
   /// Of the UAV's collision shapes: how far they reach from the origin of B. 0: unknown.
   double extent_m = 0.0;
   /// The most that the rotors can change its rate of rotation; 0: unknown.

@@ -36,8 +36,9 @@ struct Speed {
   struct Program {
     std::string uav{};
     computer::Clock clock{};
-    std::optional<record::ReplayInfo> replay{};  ///< of a replayed clock
-    std::string board{}, computer{};             ///< as in record::SutInfo
+    std::optional<record::ReplayInfo> replay{};   ///< of a replayed clock
+    std::string board{}, computer{}, launcher{};  ///< as in record::SutInfo
+    bool concurrent = false;
     std::optional<int> pinned_core{};
     double idle_W = 0.0, busy_core_W = 0.0;  ///< of the computer; 0: energy is not simulated
     friend bool operator==(const Program&, const Program&) = default;
@@ -53,6 +54,9 @@ struct Speed {
   bool is_scripted() const;
   /// … to next to nothing, as on an infinitely fast computer: at most 0.01 ms for each phase.
   bool is_instant() const;
+  /// Whether a factor makes more of what a program waits between its calls, and nobody measures how
+  /// much that is: of a concurrent program, some threads may wait while others compute.
+  bool stretches_unseen_waits() const;
 };
 
 /// How fast the program of one run worked, and on what it spent its computing time.
