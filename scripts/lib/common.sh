@@ -36,7 +36,7 @@ packages_test+=(libxml2-utils)
 # Boards in the tests: this machine, over SSH.
 packages_test+=(openssh-server openssh-client)
 # A cluster in the tests: this machine as two nodes.
-packages_test+=(slurm-wlm munge)
+packages_test+=(slurm-wlm munge parallel)
 # Debian packages of our own, for this machine.
 packages_pack=(dpkg-dev file gzip)
 # The target's programs for 64-bit ARM, and what runs them here.

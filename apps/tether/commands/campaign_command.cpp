@@ -1,8 +1,9 @@
 #include "back_ends.h"
-#include "cluster/fly_by_workers.h"
 #include "commands/commands.h"
 #include "commands/trial_service.h"
+#include "options/engine_option.h"
 #include "options/junit_option.h"
+#include "options/refuse_option.h"
 #include "options/simulator_option.h"
 #include "options/trial_options.h"
 #include "reading/file_kind.h"
@@ -12,14 +13,15 @@
 #include "terminal/progress_bar.h"
 #include "terminal/say.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <functional>
-#include <map>
 #include <optional>
 #include <stop_token>
 #include <string>
 #include <vector>
 
+#include <tether/base/counted.h>
 #include <tether/base/error.h>
 #include <tether/campaign/campaign_folder.h>
 #include <tether/campaign/campaign_results.h>
@@ -28,9 +30,12 @@
 #include <tether/os/text_file.h>
 #include <tether/report/junit.h>
 #include <tether/runner/campaign_trials.h>
+#include <tether/runner/shard_flights.h>
 #include <tether/runner/trial_folder.h>
 #include <tether/scenario/campaign.h>
 #include <tether/scenario/shipped_files.h>
+#include <tether/shards/engine_flights.h>
+#include <tether/shards/shard.h>
 
 namespace tether::app {
 
@@ -52,15 +57,26 @@ scenario::Campaign load(const CampaignOptions& options) {
   return campaign;
 }
 
-campaign::CampaignOutcome fly(runner::TrialServers& servers, const campaign::CampaignFolder& folder,
-                              const scenario::Campaign& campaign, int jobs,
-                              const std::function<void()>& check, const std::stop_token& stop) {
+/// @throws Error(kUsage) unless one of them says what to fly or collect, with options that apply.
+void require_one_task(const CampaignOptions& options) {
+  const int given = !options.campaign.empty() + !options.collect.empty() + !options.trials.empty();
+  if (given != 1)
+    throw Error(ErrorCode::kUsage,
+                "give a campaign, or --collect FOLDER…, or --trials FILE, and only one of them.")
+        .about("campaign");
+  if (!options.trials.empty() && options.shard.empty())
+    refuse_option("--trials", "needs --shard K/N.");
+  if (!options.shard.empty() && !options.engine.engine.empty())
+    refuse_option("--shard", "is for flights without --engine, which starts shards itself.");
+  if (!options.shard.empty() && !options.collect.empty())
+    refuse_option("--shard", "does not apply to --collect.");
+}
+
+campaign::CampaignOutcome with_bar(
+    const std::function<campaign::CampaignOutcome(const campaign::ProgressCallback&)>& fly) {
   ProgressBar bar;
   try {
-    const auto outcome = campaign::run_campaign(
-        folder, campaign, [&](const campaign::TrialPlan& plan) { return servers.run(plan, stop); },
-        {.jobs = jobs, .stop = stop, .wall = {}, .check = check},
-        [&](const campaign::CampaignProgress& progress) { bar.show(progress); });
+    auto outcome = fly([&](const campaign::CampaignProgress& progress) { bar.show(progress); });
     bar.finish();
     return outcome;
   } catch (...) {
@@ -69,120 +85,122 @@ campaign::CampaignOutcome fly(runner::TrialServers& servers, const campaign::Cam
   }
 }
 
-/// @throws Error(kUsage) unless exactly one of them says which campaign.
-void require_one_campaign(const CampaignOptions& options) {
-  const int given = !options.campaign.empty() + !options.collect.empty() + !options.cancel.empty();
-  if (given == 1) return;
-  throw Error(ErrorCode::kUsage,
-              "give a campaign, or --collect FOLDER, or --cancel FOLDER, and only one of them.")
-      .about("campaign");
+/// Part of a list of trials, as an engine's script has it flown. The list is in a folder of its own
+/// in that of shards, in the campaign's.
+int fly_listed(const CampaignOptions& options, const std::stop_token& stop) {
+  const shards::TrialList list =
+      shards::parse_trial_list(os::read_file(options.trials), options.trials);
+  const std::filesystem::path campaign =
+      std::filesystem::absolute(options.trials).parent_path().parent_path().parent_path();
+  runner::TrialServers servers;
+  const auto outcome = with_bar([&](const campaign::ProgressCallback& progress) {
+    return runner::fly_shard(list, campaign, shards::parse_shard(options.shard),
+                             options.jobs.value_or(1), servers, stop, progress);
+  });
+  return outcome.interrupted || outcome.failed > 0 ? exit_code(ErrorCode::kSetup) : 0;
 }
 
-/// What --collect needs to go on.
-std::map<std::string, std::string> command_of(const CampaignOptions& options,
-                                              const scenario::Campaign& campaign) {
-  return {{"campaign", campaign.file.string()},
-          {"simulator", options.simulator},
-          {"missing_models", options.reading.missing_models},
-          {"tolerant", options.reading.tolerant ? "yes" : ""}};
-}
-
-/// The options with which the workers of the folder of --collect were started.
-CampaignOptions collecting(const CampaignOptions& options) {
-  if (options.collect.empty()) return options;
-  const workers::Start start = campaign_in(options.collect);
-  const auto text = [&](const char* key) {
-    const auto found = start.command.find(key);
-    return found == start.command.end() ? std::string() : found->second;
-  };
-  CampaignOptions all = options;
-  all.campaign = text("campaign");
-  all.out = options.collect;
-  all.simulator = text("simulator");
-  all.reading = {.tolerant = !text("tolerant").empty(), .missing_models = text("missing_models")};
-  all.jobs = start.jobs;
-  all.cluster = start.options;
-  all.cluster.collects = true;
-  all.resume = true;
-  return all;
-}
-
-/// None: workers have not flown everything, which the user knows.
-std::optional<campaign::CampaignOutcome> fly_missing(
-    workers::Cluster& cluster, const campaign::CampaignFolder& folder,
-    const std::vector<std::filesystem::path>& files, const std::stop_token& stop) {
+std::vector<const campaign::TrialPlan*> missing_of(const campaign::CampaignFolder& folder) {
   std::vector<const campaign::TrialPlan*> plans;
   for (const campaign::TrialPlan& plan : folder.missing()) plans.push_back(&plan);
-  ProgressBar bar;
-  const auto collected =
-      fly_by_workers(cluster, plans, files, folder.finished().size(), stop,
-                     [&](const campaign::CampaignProgress& progress) { bar.show(progress); });
-  bar.finish();
-  if (!collected.losses.empty())
-    say("{} trials were lost by machines and flown again, or are reported as not flown.\n",
-        collected.losses.size());
-  if (collected.end != workers::CollectEnd::kComplete) return std::nullopt;
-  return collected.outcome;
+  return plans;
 }
 
-int run_trials(const CampaignOptions& given, const std::stop_token& stop) {
-  const CampaignOptions options = collecting(given);
+/// Every N-th trial of the campaign, from the K-th on.
+shards::TrialList list_of(const scenario::Campaign& campaign,
+                          const std::vector<std::filesystem::path>& files) {
+  shards::TrialList list{.files = shards::digests_of(files)};
+  for (const campaign::TrialPlan& plan : campaign::plan_trials(campaign, {}))
+    list.trials.push_back({plan.folder, to_json(runner::request_of(plan))});
+  return list;
+}
+
+struct Flying {
+  const CampaignOptions& options;
+  const scenario::Campaign& campaign;
+  const campaign::CampaignFolder& folder;
+  const campaign::Settings& settings;
+  const std::vector<std::filesystem::path>& files;
+  int jobs = 1;
+  const std::stop_token& stop;
+};
+
+campaign::CampaignOutcome fly(const Flying& f, const std::optional<shards::Engine>& engine,
+                              runner::TrialServers& servers,
+                              const campaign::ProgressCallback& progress) {
+  if (engine)
+    return shards::fly_by_engine(engine_setup(*engine, f.jobs, f.folder.path(), f.files),
+                                 missing_of(f.folder), f.folder.finished().size(), f.stop,
+                                 progress);
+  if (!f.options.shard.empty())
+    return runner::fly_shard(list_of(f.campaign, f.files), f.folder.path(),
+                             shards::parse_shard(f.options.shard), f.jobs, servers, f.stop,
+                             progress);
+  return campaign::run_campaign(
+      f.folder, f.campaign,
+      [&](const campaign::TrialPlan& plan) { return servers.run(plan, f.stop); },
+      {.jobs = f.jobs,
+       .stop = f.stop,
+       .wall = {},
+       .check = [&] { campaign::require_unchanged(f.campaign, f.settings, f.files); }},
+      progress);
+}
+
+int run_trials(const CampaignOptions& options, const std::stop_token& stop) {
   const scenario::Campaign campaign = load(options);
-  workers::require_allowed(campaign, options.cluster);
-  const int jobs = workers::jobs_of(options.jobs, options.cluster);
-  campaign::require_jobs_allowed(campaign, jobs);
-  require_ports(campaign, jobs);
+  const auto engine = engine_of(options.engine);
+  const int jobs = jobs_of(options.jobs, engine);
+  if (!options.shard.empty()) (void)shards::parse_shard(options.shard);
+  // Shards of an engine may run on one machine.
+  const int at_once = engine ? std::max(2, jobs) : jobs;
+  campaign::require_jobs_allowed(campaign, at_once);
+  require_ports(campaign, at_once);
   const std::filesystem::path out =
       options.out.empty() ? std::filesystem::path("out/campaigns") / campaign.name : options.out;
-  std::optional<workers::Cluster> cluster;
-  if (options.cluster.uses_workers())
-    cluster.emplace(
-        workers::Start{options.cluster, jobs, std::filesystem::current_path(),
-                       command_of(options, campaign)},
-        out, [](const campaign::TrialPlan& one) { return to_json(runner::request_of(one)); });
   sim::WorldStore worlds;
   const auto [files, warnings] = runner::files_of_trials(campaign, find_back_end, worlds);
   if (!warnings.empty())
     complain(summary_of(warnings, std::string(runner::kWarningsFile) + " of each trial"));
   runner::TrialServers servers;
-  if (!cluster) servers.start(jobs, trial_service(worlds));
-  campaign::Settings versions = versions_of(campaign, options.reading);
-  if (cluster) versions["machine"] = workers::kManyMachines;
-  const campaign::Settings settings = campaign::campaign_settings(campaign, versions, files);
-  const campaign::CampaignFolder folder(
-      out, campaign, settings,
-      options.resume ? campaign::OpenMode::kResume : campaign::OpenMode::kFresh);
+  if (!engine) servers.start(jobs, trial_service(worlds));
+  const campaign::Settings settings = campaign::campaign_settings(
+      campaign, versions_of(campaign, options.reading, engine.has_value()), files);
+  const campaign::CampaignFolder folder(out, campaign, settings,
+                                        !options.shard.empty() ? campaign::OpenMode::kShard
+                                        : options.resume       ? campaign::OpenMode::kResume
+                                                               : campaign::OpenMode::kFresh);
   for (const std::string& warning : folder.warnings()) complain("warning: " + warning);
 
-  campaign::CampaignOutcome outcome;
-  if (cluster) {
-    const auto flown = fly_missing(*cluster, folder, files, stop);
-    if (!flown) return options.cluster.detach ? 0 : exit_code(ErrorCode::kSetup);
-    outcome = *flown;
-  } else {
-    outcome = fly(
-        servers, folder, campaign, jobs,
-        [&, &files = files] { campaign::require_unchanged(campaign, settings, files); }, stop);
-  }
+  const Flying flying{options, campaign, folder, settings, files, jobs, stop};
+  const auto outcome = with_bar([&](const campaign::ProgressCallback& progress) {
+    return fly(flying, engine, servers, progress);
+  });
   const campaign::CampaignResults results = campaign::read_campaign_results(out);
   if (!options.junit.empty())
     os::write_file_atomically(options.junit, report::to_junit(results, out));
   if (outcome.interrupted) {
-    say("tether: interrupted; to continue, type: tether campaign {} --out {} --resume\n",
-        options.campaign.string(), out.string());
+    say("tether: interrupted; to continue, type: tether campaign {} --out {} {}\n",
+        options.campaign.string(), out.string(),
+        options.shard.empty() ? "--resume" : "--shard " + options.shard);
     return exit_code(ErrorCode::kSetup);
   }
-  print_campaign_summary(results, out);
+  if (!options.shard.empty())
+    say("Part {}: {} flown. To report all parts, type: tether campaign --collect {}\n",
+        options.shard, counted(outcome.ran, "trial"), out.string());
+  else
+    print_campaign_summary(results, out);
   return outcome.failed > 0 ? exit_code(ErrorCode::kSetup) : 0;
 }
 
 }  // namespace
 
 int run_campaign(const CampaignOptions& options, const std::stop_token& stop) {
-  require_one_campaign(options);
-  if (!options.cancel.empty()) return cancel_jobs(options.cancel);
-  return with_junit(options.junit,
-                    (options.campaign.empty() ? options.collect : options.campaign).string(),
+  require_one_task(options);
+  if (!options.trials.empty()) return fly_listed(options, stop);
+  if (!options.collect.empty())
+    return with_junit(options.junit, options.collect.front().string(),
+                      [&] { return collect_campaign(options); });
+  return with_junit(options.junit, options.campaign.string(),
                     [&] { return run_trials(options, stop); });
 }
 

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include <tether/runner/trial_request.h>
-#include <tether/workers/cluster.h>
 
 /// The subcommands of `tether`, one file each; command_line.cpp parses their options. Each returns
 /// the exit code of the program. The long ones end early after a stop request.
@@ -36,20 +35,29 @@ struct RunOptions {
 /// Runs one trial and prints its result.
 int run_one(const RunOptions& options, const std::stop_token& stop);
 
+/// What runs the shards of a campaign.
+struct EngineOptions {
+  std::string engine;                 ///< name of a shipped one, or a file; empty: none
+  std::vector<std::string> settings;  ///< "NAME=VALUE", of its options
+};
+
 struct CampaignOptions {
   std::filesystem::path campaign;
-  std::filesystem::path collect;  ///< folder of a campaign, which names everything else
-  std::filesystem::path cancel;   ///< the same
+  std::vector<std::filesystem::path> collect;  ///< folders of a campaign
+  std::filesystem::path trials;                ///< a list of an engine's shards
   std::filesystem::path out;
+  std::string shard;  ///< "K/N"
   std::string simulator;
   std::optional<int> jobs;
-  workers::ClusterOptions cluster;
+  EngineOptions engine;
   ReadingOptions reading;
   bool resume = false;
   std::filesystem::path junit;
 };
 /// Runs many trials: scenarios x conditions x seeds.
 int run_campaign(const CampaignOptions& options, const std::stop_token& stop);
+/// Brings the results of its folders together, and prints them.
+int collect_campaign(const CampaignOptions& options);
 
 /// The campaign in the folder of `tether size` is called this and the scenario's name. Names of
 /// campaign files have no spaces.
@@ -73,7 +81,7 @@ struct SizeOptions {
   std::optional<std::vector<double>> between;
   std::size_t max_trials = 300;
   std::optional<int> jobs;
-  workers::ClusterOptions cluster;
+  EngineOptions engine;
   ReadingOptions reading;
   bool resume = false;
   bool force = false;
@@ -81,12 +89,6 @@ struct SizeOptions {
 };
 /// Finds the slowest computer that is sufficient for a scenario.
 int size(const SizeOptions& options, const std::stop_token& stop);
-
-struct WorkerOptions {
-  std::filesystem::path folder;
-};
-/// Flies trials of a folder that machines share.
-int work(const WorkerOptions& options, const std::stop_token& stop);
 
 struct ReportOptions {
   std::filesystem::path folder;

@@ -2,6 +2,7 @@
 
 #include "back_ends.h"
 #include "commands/trial_service.h"
+#include "options/engine_option.h"
 #include "options/refuse_option.h"
 #include "options/simulator_option.h"
 #include "options/trial_options.h"
@@ -74,22 +75,13 @@ SizeTrials::SizeTrials(const SizeOptions& options, scenario::Campaign campaign,
                        std::function<std::string(const campaign::TrialPlan&)> name)
     : options_(options),
       campaign_(std::move(campaign)),
-      jobs_(workers::jobs_of(options.jobs, options.cluster)),
+      engine_(engine_of(options.engine)),
+      jobs_(jobs_of(options.jobs, engine_)),
       stop_(std::move(stop)),
       name_(std::move(name)),
       files_(checked_files()),
-      cluster_(
-          options.cluster.uses_workers()
-              ? std::make_unique<workers::Cluster>(
-                    workers::Start{options.cluster, jobs_, std::filesystem::current_path(), {}},
-                    out,
-                    [](const campaign::TrialPlan& one) { return to_json(runner::request_of(one)); })
-              : nullptr),
-      settings_([&] {
-        campaign::Settings versions = versions_of(campaign_, options.reading);
-        if (cluster_) versions["machine"] = workers::kManyMachines;
-        return campaign::campaign_settings(campaign_, versions, files_);
-      }()),
+      settings_(campaign::campaign_settings(
+          campaign_, versions_of(campaign_, options.reading, engine_.has_value()), files_)),
       folder_(out, campaign_, settings_, open_mode(options)) {
   for (const std::string& warning : folder_.warnings()) complain("warning: " + warning);
   for (const campaign::TrialPlan& plan : folder_.missing()) missing_[plan.folder] = &plan;
@@ -100,14 +92,15 @@ SizeTrials::SizeTrials(const SizeOptions& options, scenario::Campaign campaign,
 }
 
 std::vector<std::filesystem::path> SizeTrials::checked_files() {
-  workers::require_allowed(campaign_, options_.cluster);
-  campaign::require_jobs_allowed(campaign_, jobs_);
-  require_ports(campaign_, jobs_);
+  // Shards of an engine may run on one machine.
+  const int at_once = engine_ ? std::max(2, jobs_) : jobs_;
+  campaign::require_jobs_allowed(campaign_, at_once);
+  require_ports(campaign_, at_once);
   sim::WorldStore worlds;
   const auto [files, warnings] = runner::files_of_trials(campaign_, find_back_end, worlds);
   if (!warnings.empty())
     complain(summary_of(warnings, std::string(runner::kWarningsFile) + " of each flight"));
-  if (!options_.cluster.uses_workers()) servers_.start(jobs_, trial_service(worlds));
+  if (!engine_) servers_.start(jobs_, trial_service(worlds));
   return files;
 }
 
@@ -163,9 +156,10 @@ bool SizeTrials::run(const Plans& plans, const Questions& questions) {
     show(progress, questions);
   };
   const bool is_whole = [&] {
-    if (cluster_)
-      return fly_by_workers(*cluster_, plans, files_, 0, stop_, show_it).end ==
-             workers::CollectEnd::kComplete;
+    if (engine_)
+      return !shards::fly_by_engine(engine_setup(*engine_, jobs_, folder_.path(), files_), plans, 0,
+                                    stop_, show_it)
+                  .interrupted;
     const auto fly_one = [&](const campaign::TrialPlan& plan) { return servers_.run(plan, stop_); };
     const auto check = [&] { campaign::require_unchanged(campaign_, settings_, files_); };
     return !campaign::run_trials(

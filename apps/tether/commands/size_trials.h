@@ -1,6 +1,5 @@
 #pragma once
 
-#include "cluster/fly_by_workers.h"
 #include "commands/commands.h"
 #include "terminal/status_line.h"
 
@@ -8,7 +7,6 @@
 #include <filesystem>
 #include <functional>
 #include <map>
-#include <memory>
 #include <optional>
 #include <stop_token>
 #include <string>
@@ -20,6 +18,7 @@
 #include <tether/report/verdict.h>
 #include <tether/runner/trial_server.h>
 #include <tether/scenario/campaign.h>
+#include <tether/shards/engine.h>
 
 /// What `tether size` does alike whatever it varies.
 namespace tether::app {
@@ -82,14 +81,13 @@ class SizeTrials {
 
   const SizeOptions& options_;
   scenario::Campaign campaign_;
+  std::optional<shards::Engine> engine_;
   int jobs_;
   std::stop_token stop_;
   std::function<std::string(const campaign::TrialPlan&)> name_;
-  // Before the folder: without Slurm, nothing is written; and copies of this process must not hold
-  // its locks.
+  // Before the folder: copies of this process must not hold its locks.
   runner::TrialServers servers_;
   std::vector<std::filesystem::path> files_;
-  std::unique_ptr<workers::Cluster> cluster_;
   campaign::Settings settings_;
   campaign::CampaignFolder folder_;
   std::map<std::filesystem::path, const campaign::TrialPlan*> missing_;  // by its folder

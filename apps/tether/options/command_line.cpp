@@ -89,21 +89,16 @@ void add_junit_option(CLI::App& command, std::filesystem::path& junit) {
       "target");
 }
 
-void add_cluster_options(CLI::App& command, workers::ClusterOptions& cluster) {
-  command.add_flag("--slurm", cluster.slurm,
-                   "Have the trials flown by an array of Slurm jobs; the folder of --out must be "
-                   "shared with their nodes");
+void add_engine_options(CLI::App& command, EngineOptions& engine) {
+  command.add_option("--engine", engine.engine,
+                     "Have the flights flown by other processes or machines: name of a shipped "
+                     "engine (such as slurm or parallel), or a file (TOML). They must share the "
+                     "folder of --out");
   command
-      .add_option_function<std::string>(
-          "--slurm-options",
-          [&cluster](const std::string& text) {
-            cluster.slurm_options = CLI::detail::split_up(text);
-          },
-          "Further options of sbatch, as in \"--partition=fast --time=2:00:00\"")
-      ->type_name("TEXT");
-  command.add_flag("--scale-nodes", cluster.scales_nodes,
-                   "With the clock \"cpu\": scale CPU time by the speed of each node. Otherwise "
-                   "nodes of another speed than the first are rejected");
+      .add_option("--engine-option", engine.settings,
+                  "NAME=VALUE: an option of the engine, several times if you like, as in "
+                  "\"options=--partition=fast\"")
+      ->type_name("NAME=VALUE");
 }
 
 void add_run_command(CLI::App& program, Action& action) {
@@ -192,16 +187,19 @@ void add_campaign_command(CLI::App& program, Action& action) {
                       "Name of a shipped campaign, or a file (TOML)");
   command->add_option("--out", options->out, "Folder for the trials [out/campaigns/CAMPAIGN]");
   command->add_option("--jobs", options->jobs,
-                      "Number of parallel trials [1; with --slurm, one for each core]. Rejected if "
+                      "Number of parallel trials [1], or of shards of an engine. Rejected if "
                       "parallel runs would distort measured time");
-  add_cluster_options(*command, options->cluster);
-  command->add_flag("--detach", options->cluster.detach,
-                    "End as soon as the jobs are submitted; without --slurm, prepare the folder "
-                    "for workers that you start (tether worker)");
-  command->add_option(
-      "--collect", options->collect,
-      "Collect the results of workers in this folder, and have lost trials flown again");
-  command->add_option("--cancel", options->cancel, "Cancel the jobs of this folder");
+  command
+      ->add_option("--shard", options->shard,
+                   "Fly only part K of N: each N-th trial, from the K-th on. Other parts can be "
+                   "flown at the same time, in the same or another folder")
+      ->type_name("K/N");
+  add_engine_options(*command, options->engine);
+  command->add_option("--collect", options->collect,
+                      "Bring the results of these folders of a campaign together in the first one, "
+                      "or in that of --out, and report what is missing");
+  command->add_option("--trials", options->trials,
+                      "Fly trials of this list, which an engine's script names, with --shard");
   add_simulator_option(*command, options->simulator);
   add_junit_option(*command, options->junit);
   add_reading_options(*command, options->reading);
@@ -210,7 +208,9 @@ void add_campaign_command(CLI::App& program, Action& action) {
   command->footer(R"(Examples:
   tether campaign face_anchor --out out/campaign
   tether campaign face_anchor --out out/campaign --resume
-  tether campaign face_anchor --out /shared/campaign --slurm --slurm-options "--time=2:00:00"
+  tether campaign face_anchor --out /shared/campaign --engine slurm --engine-option "options=--time=2:00:00"
+  tether campaign face_anchor --out part3 --shard 3/8
+  tether campaign --collect part1 part2 part3 --out all
   tether campaign face_anchor --simulator gazebo --out out/campaign_gazebo)");
 }
 
@@ -256,11 +256,10 @@ void add_size_command(CLI::App& program, Action& action) {
   command->add_option("--unsynchronised", options->unsynchronised,
                       "Condition without synchronisation to compare: fly it with the same "
                       "slowdowns and seeds, which doubles the flights");
-  command->add_option(
-      "--jobs", options->jobs,
-      "Number of parallel flights [1; with --slurm, one for each core]. Rejected if "
-      "parallel runs would distort measured time");
-  add_cluster_options(*command, options->cluster);
+  command->add_option("--jobs", options->jobs,
+                      "Number of parallel flights [1], or of shards of an engine. Rejected if "
+                      "parallel runs would distort measured time");
+  add_engine_options(*command, options->engine);
   command->add_option("--out", options->out,
                       "Output folder [out/size/SCENARIO; for UAVs, SCENARIO-uavs]");
   command->add_flag("--resume", options->resume, "Continue with the flights in the folder");
@@ -279,24 +278,6 @@ Examples:
   tether size face_anchor --success 0.95 --interval 1.2 --max-trials 600
   tether size face_anchor --condition target --unsynchronised "target, no sync"
   tether size four_on_one_board --axis uavs)");
-}
-
-void add_worker_command(CLI::App& program, Action& action) {
-  const auto [command, options] = add_command(
-      program, action, "worker",
-      "Fly trials of a campaign's folder that machines share, until none is left", work);
-  command
-      ->add_option("folder", options->folder,
-                   "Folder of a campaign that was started with --slurm or --detach")
-      ->required();
-  command->footer(
-      R"(Exit codes: 0 no trial is left, 2 the files or the speed of this machine differ, 3 this machine
-failed twice in a row, or the worker was ended.
-
-Examples:
-  tether campaign face_anchor --detach --out /shared/campaign
-  tether worker /shared/campaign
-  tether campaign --collect /shared/campaign)");
 }
 
 void add_report_command(CLI::App& program, Action& action) {
@@ -467,9 +448,9 @@ int run_command_line(int argc, char** argv, std::optional<os::Interrupt>& interr
 
   Action action;
   for (const auto add :
-       {add_run_command, add_campaign_command, add_size_command, add_worker_command,
-        add_report_command, add_audit_command, add_timing_command, add_frames_command,
-        add_plot_command, add_world_command, add_target_command, add_list_command})
+       {add_run_command, add_campaign_command, add_size_command, add_report_command,
+        add_audit_command, add_timing_command, add_frames_command, add_plot_command,
+        add_world_command, add_target_command, add_list_command})
     add(program, action);
   std::string shell;
   add_completion_command(program, shell)->callback([&] {

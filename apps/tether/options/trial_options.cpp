@@ -1,5 +1,6 @@
 #include "options/trial_options.h"
 
+#include <algorithm>
 #include <cstdlib>
 
 #include <fmt/format.h>
@@ -22,11 +23,18 @@ void require_ports(const scenario::Campaign& campaign, int jobs) {
       .about("GAZEBO_MASTER_URI");
 }
 
-campaign::Settings versions_of(const scenario::Campaign& campaign, const ReadingOptions& reading) {
+campaign::Settings versions_of(const scenario::Campaign& campaign, const ReadingOptions& reading,
+                               bool by_engine) {
   campaign::Settings versions = {
       {"tether", std::string(version())},
-      {"machine", os::describe_machine()},
       {"simulator", fmt::format("{}", fmt::join(runner::simulators(campaign), ", "))}};
+  const auto is_measured = [](const scenario::CampaignScenario& entry) {
+    return std::ranges::any_of(entry.conditions, [&](const std::string& name) {
+      return !campaign::repeats(*entry.scenario.find_condition(name));
+    });
+  };
+  if (std::ranges::any_of(campaign.scenarios, is_measured))
+    versions["machine"] = by_engine ? "chosen by an engine" : os::describe_machine();
   if (reading.tolerant) versions["reading of worlds"] = "tolerant";
   if (reading.missing_models != "error") versions["missing models"] = reading.missing_models;
   return versions;

@@ -15,6 +15,8 @@ namespace tether::app {
 void require_ports(const scenario::Campaign& campaign, int jobs);
 
 /// Versions and options that must be equal for results to be comparable.
-campaign::Settings versions_of(const scenario::Campaign& campaign, const ReadingOptions& reading);
+/// With the machine, if measured times depend on it.
+campaign::Settings versions_of(const scenario::Campaign& campaign, const ReadingOptions& reading,
+                               bool by_engine);
 
 }  // namespace tether::app

@@ -25,7 +25,7 @@ struct KindText {
   const char* name;
   const char* use;  ///< what to do with it; {} is its path
 };
-constexpr std::array<KindText, 10> kFileKinds = {{
+constexpr std::array<KindText, 11> kFileKinds = {{
     {"a scenario", "To fly it, type: tether run {}"},
     {"a campaign", "To fly it, type: tether campaign {}"},
     {"a sensor profile", "To use it, type: tether run SCENARIO --profile {}"},
@@ -33,6 +33,7 @@ constexpr std::array<KindText, 10> kFileKinds = {{
     {"a world or model", "To use it, name it in a scenario ('world', or 'model' of a [[uav]])"},
     {"a mission", "To fly it, type: tether-sut mission {}"},
     {"a rig", "To use it, type: tether-sut TASK --rig {}"},
+    {"an engine", "To fly by it, type: tether campaign CAMPAIGN --engine {}"},
     {"a record", "To check it, type: tether audit {0}; to draw it, tether plot {0}"},
     {"the folder of a run",
      "To report it, type: tether report {0}; its record is "
@@ -54,6 +55,7 @@ const std::vector<Signature>& signatures() {
       {FileKind::kRig, {"sensors", "uav"}, {"world", "name"}},
       {FileKind::kRig, {"sensors", "anchor"}, {"world", "name"}},
       {FileKind::kProfile, {"name", "sensors"}, {"world"}},
+      {FileKind::kEngine, {"command", "shards"}, {"world", "name"}},
       {FileKind::kTarget, {"name", "clock"}, {"sensors", "world"}},
       {FileKind::kTarget, {"name", "address"}, {"sensors", "world"}},
   };

@@ -14,6 +14,7 @@ enum class FileKind {
   kWorld,
   kMission,
   kRig,
+  kEngine,
   kRecord,
   kRun,             ///< a folder
   kCampaignFolder,  ///< a folder with the trials of a campaign

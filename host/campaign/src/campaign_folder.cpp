@@ -7,6 +7,7 @@
 
 #include <tether/campaign/campaign_folder.h>
 #include <tether/campaign/refuse_folder.h>
+#include <tether/os/temporary_folder.h>
 #include <tether/os/text_file.h>
 
 namespace tether::campaign {
@@ -14,13 +15,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::string_view kNewPrefix = ".new-";
+
 // A campaign.json that was being written when a campaign ended is replaced by the next one.
 bool holds_anything(const fs::path& folder) {
   const std::string partial = std::string(kCampaignFile) + std::string(os::kPartSuffix);
   std::error_code failed;
   for (const auto& entry : fs::directory_iterator(folder, failed)) {
     const fs::path name = entry.path().filename();
-    if (name != kLockFile && name != partial) return true;
+    const bool is_ours = name == kLockFile || name == partial || name == kShardsFolder ||
+                         name.string().starts_with(kNewPrefix);
+    if (!is_ours) return true;
   }
   if (!failed) return false;
   throw Error(ErrorCode::kSetup, {folder.string()}, "cannot be read: " + failed.message() + ".")
@@ -107,7 +112,8 @@ fs::path with_something_to_resume(fs::path folder, OpenMode mode) {
 CampaignFolder::CampaignFolder(fs::path folder, const scenario::Campaign& campaign,
                                const Settings& settings, OpenMode mode)
     : folder_(with_something_to_resume(std::move(folder), mode)),
-      claim_(folder_, FolderClaim::By::kCampaign) {
+      claim_(folder_,
+             mode == OpenMode::kShard ? FolderClaim::By::kShard : FolderClaim::By::kCampaign) {
   const CampaignManifest manifest = manifest_of(campaign, settings);
   if (holds_anything(folder_)) {
     check_existing(manifest, mode);
@@ -120,10 +126,24 @@ CampaignFolder::CampaignFolder(fs::path folder, const scenario::Campaign& campai
                               "choose another folder.",
                               finished_.size(), finished_.size() + missing_.size()));
   }
-  os::write_file_atomically(folder_ / kCampaignFile, to_json(manifest));
+  write_manifest(manifest, mode);
   // A report of fewer trials would lie beside the new ones.
   std::error_code ignored;
   if (!missing_.empty()) fs::remove(folder_ / kReportFile, ignored);
+}
+
+// Several shards may come at once, and write the same.
+void CampaignFolder::write_manifest(const CampaignManifest& manifest, OpenMode mode) const {
+  const std::string text = to_json(manifest);
+  if (mode != OpenMode::kShard) return os::write_file_atomically(folder_ / kCampaignFile, text);
+  const os::TemporaryFolder own(std::string(kNewPrefix), folder_);
+  os::write_file_atomically(own / "campaign", text);
+  std::error_code failed;
+  fs::rename(own / "campaign", folder_ / kCampaignFile, failed);
+  if (failed)
+    throw Error(ErrorCode::kSetup, {(folder_ / kCampaignFile).string()},
+                "cannot be written: " + failed.message() + ".")
+        .about(folder_.string());
 }
 
 void CampaignFolder::check_existing(const CampaignManifest& now, OpenMode mode) const {
@@ -164,6 +184,15 @@ void CampaignFolder::sort_trials(const scenario::Campaign& campaign) {
         listed->second.contains(plan.folder.filename().string()) && has_usable_result(plan);
     (is_finished ? finished_ : missing_).push_back(std::move(plan));
   }
+}
+
+bool has_result(const fs::path& trial) try {
+  std::error_code ignored;
+  if (!fs::exists(trial / kResultFile, ignored)) return false;
+  const TrialResult result = read_result(trial);
+  return result.end != kEndSetupFailed && result.end != kEndInterrupted;
+} catch (const Error&) {
+  return false;
 }
 
 bool CampaignFolder::has_usable_result(const TrialPlan& plan) {

@@ -63,6 +63,13 @@ std::vector<TrialPlan> plan_trials(const scenario::Campaign& campaign,
   return plans;
 }
 
+bool repeats(const scenario::Condition& condition) {
+  return condition.policy == scenario::Policy::kConservativeBarrier &&
+         std::ranges::all_of(condition.computers, [](const scenario::Computer& computer) {
+           return computer.clock.repeats();
+         });
+}
+
 int parallel_trials(const TrialPlan& plan, int jobs) {
   constexpr double kSimulatorLoad = 0.5, kShareInUse = 0.5;
   const scenario::Condition& condition = *plan.condition;

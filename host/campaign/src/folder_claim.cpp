@@ -147,17 +147,25 @@ FolderClaim::FolderClaim(const fs::path& folder, By by) {
   std::error_code failed;
   fs::create_directories(folder, failed);
   if (failed) fail(folder, "cannot be made", failed.value());
+  const auto lock_campaign = [&](int how, const char* who) {
+    const fs::path path = folder / kLockFile;
+    os::FileDescriptor file = open_own(path, O_RDWR | O_CREAT);
+    if (!lock(file, how, path)) refuse_busy(folder, who);
+    if (how == LOCK_EX) write_process(file, path);
+    locks_.push_back(std::move(file));
+  };
+  if (by == By::kShard) {
+    locks_ = share_campaigns(whole.parent_path(), whole, folder);
+    lock_campaign(LOCK_SH, "a campaign is running in this folder");
+    return;
+  }
   os::FileDescriptor own = open_own(folder, O_RDONLY);
   if (!lock(own, LOCK_EX, folder)) refuse_busy(folder, "another run writes there");
   // Of two processes that come at once, one finds the other's lock now.
   locks_ = share_campaigns(by == By::kRun ? whole : whole.parent_path(), whole, folder);
   locks_.push_back(std::move(own));
   if (by == By::kRun) return;
-  const fs::path path = folder / kLockFile;
-  os::FileDescriptor file = open_own(path, O_RDWR | O_CREAT);
-  if (!lock(file, LOCK_EX, path)) refuse_busy(folder, "another run writes in a folder below");
-  write_process(file, path);
-  locks_.push_back(std::move(file));
+  lock_campaign(LOCK_EX, "another run writes in a folder below");
 }
 
 }  // namespace tether::campaign

@@ -69,7 +69,6 @@ Json json_of(const ThisRun& run) {
             {"largest_lag_s", exact_seconds(run.largest_lag)},
             {"attempts", run.attempts}};
   if (!run.first_failure.empty()) json["first_failure"] = run.first_failure;
-  if (!run.node.empty()) json["node"] = run.node;
   if (run.target) json["target"] = json_of(*run.target);
   for (const TargetReport& target : run.more_targets)
     json["more_targets"].push_back(json_of(target));
@@ -97,7 +96,6 @@ ThisRun read_this_run(const JsonReader& json) {
   if (attempts < 1 || attempts > 1000) json.fail("attempts", "must be 1 to 1000");
   run.attempts = static_cast<int>(attempts);
   if (json.has("first_failure")) run.first_failure = json.text("first_failure");
-  if (json.has("node")) run.node = json.text("node");
   if (json.has("target")) run.target = read_target(json.object("target"));
   if (json.has("more_targets"))
     for (const JsonReader& target : json.objects("more_targets"))

@@ -138,10 +138,14 @@ std::optional<campaign::TrialResult> TrialServers::run(const TrialRequest& reque
 campaign::TrialResult TrialServers::run(const campaign::TrialPlan& plan,
                                         const std::stop_token& stop) {
   if (auto result = run(request_of(plan), stop)) return std::move(*result);
-  auto interrupted = campaign::make_setup_failure(*plan.scenario, *plan.condition, plan.seed,
-                                                  "interrupted by the user");
-  interrupted.end = campaign::kEndInterrupted;
-  return interrupted;
+  return interrupted(plan);
+}
+
+campaign::TrialResult interrupted(const campaign::TrialPlan& plan) {
+  auto result = campaign::make_setup_failure(*plan.scenario, *plan.condition, plan.seed,
+                                             "interrupted by the user");
+  result.end = campaign::kEndInterrupted;
+  return result;
 }
 
 namespace {

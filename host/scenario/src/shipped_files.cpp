@@ -33,7 +33,8 @@ constexpr std::array<Place, kShippedKinds> kPlaces = {
      {"profile", "profiles", ".toml", "sensors", "tether run SCENARIO --profile"},
      {"energy file", "energy", ".toml", "rotor", nullptr},
      {"target", "profiles/targets", ".toml", "clock", "tether run SCENARIO --target"},
-     {"rig", "rigs", ".toml", "anchor", nullptr}}};
+     {"rig", "rigs", ".toml", "anchor", nullptr},
+     {"engine", "engines", ".toml", "command", "tether campaign CAMPAIGN --engine"}}};
 
 const Place& place_of(ShippedKind kind) {
   return kPlaces.at(static_cast<std::size_t>(kind));

@@ -44,9 +44,17 @@ std::string to_json(const CampaignManifest& manifest);
 /// @throws Error(kBadFile) if the folder has no usable campaign.json.
 CampaignManifest read_manifest(const std::filesystem::path& folder);
 
+/// What processes and machines that fly parts of the campaign leave beside its trials.
+inline constexpr std::string_view kShardsFolder = ".shards";
+
+/// Whether the folder of a trial has a result that counts: not that of a failed set-up, or of a
+/// flight that was interrupted.
+bool has_result(const std::filesystem::path& trial);
+
 enum class OpenMode {
   kFresh,    ///< the folder must not contain results yet
   kResume,   ///< continue with the results that exist; the folder must not be missing or empty
+  kShard,    ///< continue as kResume, beside other shards; the folder may be missing
   kReplace,  ///< remove the results of a campaign of that name, and everything beside them
 };
 
@@ -75,6 +83,7 @@ class CampaignFolder {
 
  private:
   void check_existing(const CampaignManifest& now, OpenMode mode) const;
+  void write_manifest(const CampaignManifest& manifest, OpenMode mode) const;
   void remove_existing() const;
   void sort_trials(const scenario::Campaign& campaign);
   bool has_usable_result(const TrialPlan& plan);

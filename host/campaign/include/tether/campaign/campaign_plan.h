@@ -32,6 +32,10 @@ std::filesystem::path trial_folder(const std::string& scenario, const std::strin
 std::vector<TrialPlan> plan_trials(const scenario::Campaign& campaign,
                                    const std::filesystem::path& folder);
 
+/// Whether a trial gives the same result each time, on every machine: under the barrier, with
+/// clocks that repeat.
+bool repeats(const scenario::Condition& condition);
+
 /// Trials that may run in parallel, up to `jobs` at a time.
 struct Batch {
   int jobs = 1;

@@ -16,9 +16,10 @@ inline constexpr std::string_view kLockFile = ".tether-campaign.lock";
 /// not inherit. Not thread-safe.
 class FolderClaim {
  public:
-  enum class By { kRun, kCampaign };
+  enum class By { kRun, kCampaign, kShard };
 
-  /// Makes the folder if it does not exist. Waits up to 0.5 s for a process that is being killed.
+  /// Makes the folder if it does not exist. Shards of one campaign share its folder with each
+  /// other. Waits up to 0.5 s for a process that is being killed.
   /// @throws Error(kUsage), about the folder and without a change, if another run or campaign has
   ///   claimed it, if a campaign that did not start this process runs in a folder above it, if a
   ///   run has claimed a folder below that of this campaign, or if it is the folder of a trial of

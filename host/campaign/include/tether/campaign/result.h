@@ -186,7 +186,6 @@ struct ThisRun {
   std::vector<MachineLoad> loads{};          ///< of machines whose clock was read; also if normal
   std::vector<std::string> sut_files{};  ///< written by SUTs; paths in the trial's folder, sorted
   std::optional<SimulatorFigures> simulator{};  ///< none: not measured
-  std::string node{};  ///< the machine whose worker flew it; empty: no worker did
   /// With these, `tether size` finds how slow the computer may be: scenario, "--condition", its
   /// name, and of a target of the command line "--target" and its file. Empty: not possible.
   std::vector<std::string> size_arguments{};

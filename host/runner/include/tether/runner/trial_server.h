@@ -31,6 +31,9 @@ struct TrialService {
 /// @return the exit code.
 int serve_trials(const TrialService& service);
 
+/// The result of a trial that a stop request ended.
+campaign::TrialResult interrupted(const campaign::TrialPlan& plan);
+
 /// Runs trials, each by a server that does nothing else meanwhile. A failure of a trial cannot
 /// affect others. Thread-safe.
 class TrialServers {

@@ -17,9 +17,10 @@ enum class ShippedKind {
   kProfile,
   kEnergy,
   kTarget,
-  kRig
+  kRig,
+  kEngine
 };
-constexpr int kShippedKinds = 9;
+constexpr int kShippedKinds = 10;
 
 /// "scenario", "energy file", ...
 const char* to_text(ShippedKind kind);

@@ -1,0 +1,55 @@
+#include "commands/commands.h"
+#include "terminal/print.h"
+#include "terminal/print_report.h"
+#include "terminal/say.h"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include <tether/base/counted.h>
+#include <tether/base/error.h>
+#include <tether/campaign/campaign_results.h>
+#include <tether/os/text_file.h>
+#include <tether/report/junit.h>
+#include <tether/shards/collect.h>
+
+namespace tether::app {
+namespace {
+
+constexpr std::size_t kMostNames = 5;
+
+void complain_of_each(const std::string& what, const std::vector<std::string>& lines) {
+  for (const std::string& line : lines) complain(fmt::format("warning: {}: {}", what, line));
+}
+
+void say_missing(const shards::Collected& collected, const std::filesystem::path& out) {
+  say("{} of {} have no result:\n", collected.missing.size(), counted(collected.planned, "trial"));
+  for (std::size_t i = 0; i < collected.missing.size() && i < kMostNames; ++i)
+    say("  {}\n", collected.missing[i].string());
+  if (collected.missing.size() > kMostNames)
+    say("  and {} more\n", collected.missing.size() - kMostNames);
+  say("To fly them, type: tether campaign CAMPAIGN --out {} --resume\n", out.string());
+}
+
+}  // namespace
+
+int collect_campaign(const CampaignOptions& options) {
+  std::vector<std::filesystem::path> folders = options.collect;
+  if (!options.out.empty()) folders.insert(folders.begin(), options.out);
+  const std::filesystem::path out = folders.front();
+  const shards::Collected collected = shards::collect(folders);
+  complain_of_each("left out", collected.left_out);
+  complain_of_each("flown twice", collected.differing);
+  const campaign::CampaignResults results = campaign::read_campaign_results(out);
+  if (!options.junit.empty())
+    os::write_file_atomically(options.junit, report::to_junit(results, out));
+  print_campaign_summary(results, out);
+  if (!collected.missing.empty()) say_missing(collected, out);
+  if (!collected.left_out.empty()) return exit_code(ErrorCode::kBadFile);
+  return collected.missing.empty() ? 0 : exit_code(ErrorCode::kSetup);
+}
+
+}  // namespace tether::app

@@ -1,0 +1,54 @@
+#include "options/engine_option.h"
+
+#include "options/refuse_option.h"
+#include "reading/file_kind.h"
+#include "terminal/say.h"
+
+#include <string>
+
+#include <fmt/format.h>
+
+#include <tether/os/program.h>
+#include <tether/os/shell_word.h>
+#include <tether/runner/trial_request.h>
+#include <tether/scenario/shipped_files.h>
+
+namespace tether::app {
+
+std::optional<shards::Engine> engine_of(const EngineOptions& options) {
+  if (options.engine.empty()) {
+    if (!options.settings.empty())
+      refuse_option("--engine-option", "has no effect without --engine.");
+    return std::nullopt;
+  }
+  const std::filesystem::path file = scenario::ShippedFiles::of_program(os::own_file())
+                                         .find(scenario::ShippedKind::kEngine, options.engine);
+  require_kind(file, FileKind::kEngine);
+  shards::Engine engine = shards::load_engine(file);
+  shards::set_options(engine, options.settings);
+  return engine;
+}
+
+int jobs_of(const std::optional<int>& given, const std::optional<shards::Engine>& engine) {
+  return given.value_or(engine ? static_cast<int>(engine->shards) : 1);
+}
+
+shards::EngineSetup engine_setup(const shards::Engine& engine, int jobs,
+                                 const std::filesystem::path& campaign,
+                                 const std::vector<std::filesystem::path>& files) {
+  const auto command = [](const std::filesystem::path& list, std::size_t shards) {
+    return fmt::format("{} campaign --trials {} --shard \"$1/{}\"",
+                       os::shell_word(os::own_file().string()), os::shell_word(list.string()),
+                       shards);
+  };
+  return {
+      .engine = engine,
+      .shards = static_cast<std::size_t>(jobs),
+      .campaign = campaign,
+      .files = files,
+      .shard_command = command,
+      .request = [](const campaign::TrialPlan& plan) { return to_json(runner::request_of(plan)); },
+      .tell = [](const std::string& line) { say("{}\n", line); }};
+}
+
+}  // namespace tether::app

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// Parts of a campaign that other processes fly, on this machine or on others (ADR 0072).
+namespace tether::shards {
+
+/// Part K of N of a list of trials: every N-th one, from the K-th on.
+struct Shard {
+  std::size_t number = 1;  ///< 1 to `of`
+  std::size_t of = 1;
+
+  /// @param index from 0 on.
+  bool takes(std::size_t index) const { return index % of == number - 1; }
+  friend bool operator==(const Shard&, const Shard&) = default;
+};
+/// Of "K/N". @throws Error(kUsage) about --shard for other texts.
+Shard parse_shard(const std::string& text);
+
+/// Trials for shards, as a file in the campaign's folder.
+struct TrialList {
+  struct Trial {
+    std::filesystem::path folder;  ///< of its result, relative to the campaign's folder
+    std::string request;           ///< as text
+
+    friend bool operator==(const Trial&, const Trial&) = default;
+  };
+  std::map<std::string, std::string> files{};  ///< on which results depend: digest by path
+  /// The results depend on the machine: all shards must run on equal ones.
+  bool measures = false;
+  std::vector<Trial> trials{};
+
+  friend bool operator==(const TrialList&, const TrialList&) = default;
+};
+std::string to_json(const TrialList& list);
+/// The inverse. @throws Error(kBadFile) at `file` for other texts.
+TrialList parse_trial_list(std::string_view json, const std::filesystem::path& file);
+
+/// The digest of each file, by its path. @throws Error(kBadFile) if one cannot be read.
+std::map<std::string, std::string> digests_of(const std::vector<std::filesystem::path>& files);
+/// Checks that this machine has the files as they were.
+/// @throws Error(kBadFile) about the first file that is missing or has another digest.
+void require_same_files(const std::map<std::string, std::string>& digests);
+/// Checks that all shards below the campaign's folder run on machines with this description: the
+/// first one leaves it there. @throws Error(kBadFile), about the machine, on another one.
+void require_same_machine(const std::filesystem::path& campaign, const std::string& machine);
+
+}  // namespace tether::shards

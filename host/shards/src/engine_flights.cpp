@@ -1,0 +1,242 @@
+#include <algorithm>
+#include <ctime>
+#include <vector>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <tether/base/counted.h>
+#include <tether/base/error.h>
+#include <tether/campaign/campaign_folder.h>
+#include <tether/os/child_process.h>
+#include <tether/os/clock.h>
+#include <tether/os/interrupt.h>
+#include <tether/os/shell_word.h>
+#include <tether/os/text_file.h>
+#include <tether/shards/engine_flights.h>
+#include <tether/shards/hand_in.h>
+
+// A call of the engine: a list of the trials that have no result, a script that flies one shard of
+// it, and the engine's command, which ends when all shards have ended. Meanwhile results appear in
+// the campaign's folder. Whatever is missing then is the list of the next call.
+namespace tether::shards {
+namespace {
+
+namespace fs = std::filesystem;
+using campaign::TrialPlan;
+using Plans = std::vector<const TrialPlan*>;
+
+constexpr int kMostCalls = 3;
+constexpr Duration kCancelLimit = std::chrono::seconds(30);
+
+/// Cores that a shard needs; 0: its trials need a machine of their own.
+int cores_of(std::span<const TrialPlan* const> plans) {
+  constexpr int kMostCores = 64;
+  int most = 1;
+  for (const TrialPlan* plan : plans) {
+    int cores = 1;
+    // On `cores` cores, another trial beside it would be too many.
+    const bool is_free = plan->condition->policy == scenario::Policy::kFreeRunning;
+    const auto& target = computer_of(*plan->condition, 0).target;
+    if (is_free || (target && target->cores > 0)) {
+      while (cores <= kMostCores && campaign::parallel_trials(*plan, 2 * cores) < 2) ++cores;
+      if (cores > kMostCores) return 0;
+    }
+    most = std::max(most, cores);
+  }
+  return most;
+}
+
+/// The last words of the engine, else of a shard: its log is beside that of the engine.
+std::string last_words(const fs::path& folder) {
+  std::vector<fs::path> logs;
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(folder, ignored))
+    if (entry.path().extension() == ".log") logs.push_back(entry.path());
+  std::ranges::sort(logs);
+  std::ranges::stable_partition(logs, [](const fs::path& log) { return log.stem() != "engine"; });
+  for (const fs::path& log : logs)
+    if (const std::string line = os::last_line(os::read_whole(log)); !line.empty())
+      return fmt::format("{}: {}", log.filename().string(), line);
+  return "they left no log";
+}
+
+class Flights {
+ public:
+  Flights(const EngineSetup& setup, std::span<const TrialPlan* const> plans,
+          std::size_t done_before, const std::stop_token& stop,
+          const campaign::ProgressCallback& progress)
+      : setup_(setup),
+        stop_(stop),
+        progress_(progress),
+        missing_(plans.begin(), plans.end()),
+        done_before_(done_before),
+        total_(done_before + plans.size()),
+        cores_(cores_of(plans)) {
+    require_cores();
+  }
+
+  campaign::CampaignOutcome run() {
+    for (int call = 1; call <= kMostCalls && !missing_.empty(); ++call) {
+      const std::size_t before = missing_.size();
+      fly();
+      if (outcome_.interrupted) return outcome_;
+      if (missing_.size() == before) break;
+      if (!missing_.empty() && call < kMostCalls)
+        setup_.tell(
+            fmt::format("{} without a result: flying again", counted(missing_.size(), "trial")));
+    }
+    for (const TrialPlan* plan : missing_)
+      if (exists(*plan)) ++outcome_.failed;
+    require_some();
+    if (missing_.empty()) remove_calls();
+    return outcome_;
+  }
+
+ private:
+  static bool exists(const TrialPlan& plan) {
+    std::error_code ignored;
+    return fs::exists(plan.folder / campaign::kResultFile, ignored);
+  }
+
+  void require_cores() const {
+    if (cores_ == 1 || (cores_ > 1 && setup_.engine.gives_cores())) return;
+    throw Error(
+        ErrorCode::kUsage,
+        fmt::format("--engine: a trial of this campaign needs {}, which {} cannot give it. Fly it "
+                    "without --engine, or use {{cores}} in the engine's command.",
+                    cores_ == 0 ? "a machine of its own" : fmt::format("{} cores", cores_),
+                    setup_.engine.file.string()))
+        .about("--engine");
+  }
+
+  /// Trials are without a result, not even one of a failed set-up.
+  void require_some() const {
+    const auto lost =
+        std::ranges::count_if(missing_, [](const auto* one) { return !exists(*one); });
+    if (lost == 0) return;
+    throw Error(ErrorCode::kSetup, {setup_.campaign.string()},
+                fmt::format("{} of {} have no result, because their shards ended ({}). Correct "
+                            "that, and continue with --resume.",
+                            lost, counted(total_, "trial"), last_words(calls_.back())))
+        .about("--engine");
+  }
+
+  /// Their lists and logs are of no use any more.
+  void remove_calls() const {
+    std::error_code ignored;
+    for (const fs::path& folder : calls_) fs::remove_all(folder, ignored);
+    fs::remove(setup_.campaign / campaign::kShardsFolder, ignored);  // unless it has something else
+  }
+
+  void fly() {
+    const std::string name =
+        "tether-" + os::digest_of(fmt::format("{} {} {} {}", setup_.campaign.string(),
+                                              os::utc_now(), ::getpid(), missing_.size()));
+    const fs::path& folder =
+        calls_.emplace_back(fs::absolute(setup_.campaign) / campaign::kShardsFolder / name);
+    const EngineCall call{.name = name,
+                          .folder = folder,
+                          .script = folder / "shard.sh",
+                          .shards = std::min(setup_.shards, missing_.size()),
+                          .cores = cores_};
+    write_list(call);
+    os::write_file_atomically(folder / "input", filled(setup_.engine.input, setup_.engine, call));
+    os::ChildProcess engine({.arguments = filled(setup_.engine.command, setup_.engine, call),
+                             .environment = {},
+                             .log = folder / "engine.log",
+                             .input = folder / "input"});
+    Duration pause = setup_.look_period;
+    while (!engine.wait(pause)) {
+      if (stop_.stop_requested()) return cancel(engine, call);
+      // Looking must not load the server of a shared folder.
+      const Duration began = os::read_clock(CLOCK_MONOTONIC);
+      look();
+      pause = std::max(setup_.look_period, 20 * (os::read_clock(CLOCK_MONOTONIC) - began));
+    }
+    look();
+  }
+
+  void write_list(const EngineCall& call) {
+    std::error_code failed;
+    fs::create_directories(call.folder, failed);
+    if (failed)
+      throw Error(ErrorCode::kSetup, {call.folder.string()},
+                  "cannot be made: " + failed.message() + ".")
+          .about(setup_.campaign.string());
+    TrialList list{.files = digests_of(setup_.files)};
+    for (const TrialPlan* plan : missing_) {
+      list.measures = list.measures || !campaign::repeats(*plan->condition);
+      list.trials.push_back(
+          {plan->folder.lexically_relative(setup_.campaign), setup_.request(*plan)});
+    }
+    const fs::path file = call.folder / "trials.json";
+    os::write_file_atomically(file, to_json(list));
+    os::write_file_atomically(
+        call.script, fmt::format("#!/bin/sh\n# Flies part $1 of {}.\ncd {} || exit 3\nexec {}\n",
+                                 call.shards, os::shell_word(fs::current_path().string()),
+                                 setup_.shard_command(file, call.shards)));
+    fs::permissions(call.script, fs::perms(0755));
+  }
+
+  /// Results that have appeared.
+  void look() {
+    Plans still;
+    for (const TrialPlan* plan : missing_) {
+      if (!campaign::has_result(plan->folder)) {
+        still.push_back(plan);
+        continue;
+      }
+      const campaign::TrialResult result = campaign::read_result(plan->folder);
+      ++outcome_.ran;
+      if (result.outcome == campaign::Outcome::kFailed) ++outcome_.failed;
+      report(plan, &result);
+    }
+    missing_ = std::move(still);
+  }
+
+  void report(const TrialPlan* plan, const campaign::TrialResult* result) const {
+    if (progress_)
+      progress_({.done = done_before_ + outcome_.ran,
+                 .total = total_,
+                 .failed = outcome_.failed,
+                 .time_left = {},
+                 .latest = plan,
+                 .result = result});
+  }
+
+  void cancel(os::ChildProcess& engine, const EngineCall& call) {
+    engine.terminate();
+    (void)engine.wait(kCancelLimit);
+    if (!setup_.engine.cancel.empty()) {
+      os::ChildProcess ending({.arguments = filled(setup_.engine.cancel, setup_.engine, call),
+                               .environment = {},
+                               .log = call.folder / "engine.log",
+                               .appends = true});
+      (void)ending.wait(kCancelLimit);
+    }
+    look();
+    outcome_.interrupted = true;
+  }
+
+  const EngineSetup& setup_;
+  const std::stop_token& stop_;
+  const campaign::ProgressCallback& progress_;
+  Plans missing_;
+  std::size_t done_before_, total_;
+  int cores_;
+  std::vector<fs::path> calls_;  ///< their folders
+  campaign::CampaignOutcome outcome_;
+};
+
+}  // namespace
+
+campaign::CampaignOutcome fly_by_engine(const EngineSetup& setup,
+                                        std::span<const TrialPlan* const> plans,
+                                        std::size_t done_before, const std::stop_token& stop,
+                                        const campaign::ProgressCallback& progress) {
+  if (plans.empty()) return {};
+  return Flights(setup, plans, done_before, stop, progress).run();
+}
+
+}  // namespace tether::shards

@@ -1,0 +1,78 @@
+#include <cerrno>
+#include <string>
+#include <system_error>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <tether/base/error.h>
+#include <tether/base/system_reason.h>
+#include <tether/campaign/campaign_folder.h>
+#include <tether/os/file_descriptor.h>
+#include <tether/os/temporary_folder.h>
+#include <tether/shards/hand_in.h>
+
+// A copy under a name of its own, flushed, then one rename: it is atomic, and fails if the new name
+// is a folder with content.
+namespace tether::shards {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void fail(const fs::path& path, const std::string& what, int error) {
+  throw Error(ErrorCode::kSetup, {path.string()}, what + ": " + reason_of(error) + ".")
+      .about(path.string());
+}
+
+void require(const fs::path& path, const char* what, const std::error_code& failed) {
+  if (failed) fail(path, what, failed.value());
+}
+
+void flush(const fs::path& file) {
+  const os::FileDescriptor own(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
+  if (!own || ::fsync(own.get()) != 0) fail(file, "cannot be flushed", errno);
+}
+
+/// Files and folders; a pipe or a socket of a trial is of no use elsewhere.
+void copy_all(const fs::path& from, const fs::path& to) {
+  std::error_code failed;
+  fs::create_directories(to, failed);
+  require(to, "cannot be made", failed);
+  for (const auto& entry : fs::directory_iterator(from)) {
+    const fs::path target = to / entry.path().filename();
+    if (entry.is_directory()) copy_all(entry.path(), target);
+    if (!entry.is_regular_file()) continue;
+    fs::copy_file(entry.path(), target, failed);
+    require(target, "cannot be written", failed);
+    flush(target);
+  }
+}
+
+bool rename_to(const fs::path& from, const fs::path& to) {
+  if (::rename(from.c_str(), to.c_str()) == 0) return true;
+  if (errno == EEXIST || errno == ENOTEMPTY) return false;
+  fail(to, "cannot be renamed", errno);
+}
+
+}  // namespace
+
+bool hand_in(const fs::path& flown, const fs::path& campaign, const fs::path& trial) {
+  const fs::path target = campaign / trial;
+  if (campaign::has_result(target)) return false;
+  const fs::path shards = campaign / campaign::kShardsFolder;
+  std::error_code failed;
+  fs::create_directories(shards, failed);
+  require(shards, "cannot be made", failed);
+  const os::TemporaryFolder staging("staging-", shards);
+  copy_all(flown, staging / "new");
+  fs::create_directories(target.parent_path(), failed);
+  require(target.parent_path(), "cannot be made", failed);
+  if (rename_to(staging / "new", target)) return true;
+  if (campaign::has_result(target)) return false;
+  // What was left of a flight that was cut, or a set-up that failed.
+  (void)rename_to(target, staging / "old");
+  return rename_to(staging / "new", target);
+}
+
+}  // namespace tether::shards
