@@ -59,13 +59,13 @@ scenario::Campaign load(const CampaignOptions& options) {
 
 /// @throws Error(kUsage) unless one of them says what to fly or collect, with options that apply.
 void require_one_task(const CampaignOptions& options) {
-  const int given = !options.campaign.empty() + !options.collect.empty() + !options.trials.empty();
+  const int given = !options.campaign.empty() + !options.collect.empty() + !options.listed.empty();
   if (given != 1)
     throw Error(ErrorCode::kUsage,
-                "give a campaign, or --collect FOLDER…, or --trials FILE, and only one of them.")
+                "give a campaign, or --collect FOLDER…, or --listed FILE, and only one of them.")
         .about("campaign");
-  if (!options.trials.empty() && options.shard.empty())
-    refuse_option("--trials", "needs --shard K/N.");
+  if (!options.listed.empty() && options.shard.empty())
+    refuse_option("--listed", "needs --shard K/N.");
   if (!options.shard.empty() && !options.engine.engine.empty())
     refuse_option("--shard", "is for flights without --engine, which starts shards itself.");
   if (!options.shard.empty() && !options.collect.empty())
@@ -89,9 +89,9 @@ campaign::CampaignOutcome with_bar(
 /// in that of shards, in the campaign's.
 int fly_listed(const CampaignOptions& options, const std::stop_token& stop) {
   const shards::TrialList list =
-      shards::parse_trial_list(os::read_file(options.trials), options.trials);
+      shards::parse_trial_list(os::read_file(options.listed), options.listed);
   const std::filesystem::path campaign =
-      std::filesystem::absolute(options.trials).parent_path().parent_path().parent_path();
+      std::filesystem::absolute(options.listed).parent_path().parent_path().parent_path();
   runner::TrialServers servers;
   const auto outcome = with_bar([&](const campaign::ProgressCallback& progress) {
     return runner::fly_shard(list, campaign, shards::parse_shard(options.shard),
@@ -196,7 +196,7 @@ int run_trials(const CampaignOptions& options, const std::stop_token& stop) {
 
 int run_campaign(const CampaignOptions& options, const std::stop_token& stop) {
   require_one_task(options);
-  if (!options.trials.empty()) return fly_listed(options, stop);
+  if (!options.listed.empty()) return fly_listed(options, stop);
   if (!options.collect.empty())
     return with_junit(options.junit, options.collect.front().string(),
                       [&] { return collect_campaign(options); });

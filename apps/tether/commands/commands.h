@@ -44,7 +44,7 @@ struct EngineOptions {
 struct CampaignOptions {
   std::filesystem::path campaign;
   std::vector<std::filesystem::path> collect;  ///< folders of a campaign
-  std::filesystem::path trials;                ///< a list of an engine's shards
+  std::filesystem::path listed;                ///< a list of an engine's shards
   std::filesystem::path out;
   std::string shard;  ///< "K/N"
   std::string simulator;

@@ -105,6 +105,12 @@ Plan make_plan(const SizeOptions& options) {
   const auto shipped = scenario::ShippedFiles::of_program(os::own_file());
   scenario::Scenario scenario = load_sized_scenario(options);
   const scenario::Condition own = scenario::pick_condition(scenario, options.condition);
+  if (own.policy == scenario::Policy::kFreeRunning)
+    refuse_option("--condition",
+                  fmt::format("\"{}\" is free-running, and its flights say nothing about the "
+                              "computer. Size a condition with policy = \"conservative_barrier\", "
+                              "and name this one with --unsynchronised to compare both.",
+                              own.name));
   if (computer_of(own, 0).clock.factor * plan.report.question.most > kLargestFactor)
     refuse_option("--between",
                   fmt::format("{} times the factor of condition \"{}\" is more than {}.",

@@ -198,7 +198,7 @@ void add_campaign_command(CLI::App& program, Action& action) {
   command->add_option("--collect", options->collect,
                       "Bring the results of these folders of a campaign together in the first one, "
                       "or in that of --out, and report what is missing");
-  command->add_option("--trials", options->trials,
+  command->add_option("--listed", options->listed,
                       "Fly trials of this list, which an engine's script names, with --shard");
   add_simulator_option(*command, options->simulator);
   add_junit_option(*command, options->junit);

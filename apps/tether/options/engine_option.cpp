@@ -37,7 +37,7 @@ shards::EngineSetup engine_setup(const shards::Engine& engine, int jobs,
                                  const std::filesystem::path& campaign,
                                  const std::vector<std::filesystem::path>& files) {
   const auto command = [](const std::filesystem::path& list, std::size_t shards) {
-    return fmt::format("{} campaign --trials {} --shard \"$1/{}\"",
+    return fmt::format("{} campaign --listed {} --shard \"$1/{}\"",
                        os::shell_word(os::own_file().string()), os::shell_word(list.string()),
                        shards);
   };

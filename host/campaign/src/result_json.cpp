@@ -340,8 +340,7 @@ int exit_code(const TrialResult& result) {
 }
 
 bool TrialResult::has_unseen_time() const {
-  return std::ranges::any_of(
-      this_run.doubts, [](const Doubt& doubt) { return doubt.kind != Doubt::Kind::kBusyMachine; });
+  return std::ranges::any_of(this_run.doubts, &Doubt::is_of_unseen_time);
 }
 
 const MetricValue* TrialResult::find_metric(std::string_view metric) const {

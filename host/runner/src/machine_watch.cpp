@@ -94,7 +94,8 @@ std::optional<campaign::MachineLoad> load_of_board(const campaign::TargetReport&
 std::optional<campaign::Doubt> doubt_of(const campaign::MachineLoad& load) {
   if (load.block_spread <= kUneven && load.others <= kBusy) return std::nullopt;
   return campaign::Doubt{campaign::Doubt::Kind::kBusyMachine,
-                         load.machine == kHost ? "" : load.machine, load.block_spread};
+                         load.machine == kHost ? "" : load.machine,
+                         std::max(load.block_spread, load.others)};
 }
 
 }  // namespace tether::runner

@@ -21,6 +21,10 @@ constexpr double kDoubtfulDiskShare = 0.1;
 // Threads that hand over to each other are both runnable for a moment: on a busy machine, 4 to 10 %
 // of looks at such programs were seen to find two.
 constexpr double kDoubtfulThreads = 1.3;
+// Fewer say nothing: on a busy machine, each stands for 50 ms.
+constexpr int kLeastParallelLooks = 5;
+// Less waiting than the limits above matters where a flight is as close to a limit.
+constexpr Duration kLeastSlightWait = std::chrono::milliseconds(20);
 
 std::uint16_t port_of(const std::string& address) {
   std::uint16_t port = 0;
@@ -58,6 +62,8 @@ std::vector<campaign::Doubt> doubts_of(const coordinator::SutReport& sut,
   if (stretched_s > least_s && !has_waits)
     doubts.push_back(
         {clock.counts_waiting() ? Kind::kStretchedWait : Kind::kUnseenWait, sut.uav, waiting_s});
+  else if (waiting_s > to_seconds(kLeastSlightWait) && !has_waits)
+    doubts.push_back({Kind::kSlightWait, sut.uav, std::min(1.0, stretched_s / et_s)});
   if (const double on_disk_s = to_seconds(looks.on_disk);
       on_disk_s > std::max(to_seconds(kLeastDiskDoubt), kDoubtfulDiskShare * et_s) && !has_waits &&
       !clock.counts_waiting())
@@ -65,6 +71,7 @@ std::vector<campaign::Doubt> doubts_of(const coordinator::SutReport& sut,
   const double computing_s = to_seconds(looks.computing);
   const double of_all_s = to_seconds(looks.of_all_threads);
   if (clock.kind == computer::ClockKind::kCpu &&
+      looks.parallel_looks >= kLeastParallelLooks &&
       (of_all_s - computing_s) * clock.factor > least_s &&
       of_all_s > kDoubtfulThreads * computing_s)
     doubts.push_back({Kind::kParallelThreads, sut.uav, of_all_s / computing_s});

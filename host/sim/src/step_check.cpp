@@ -111,6 +111,11 @@ double longest_ms(Holds holds) {
   return 0.1 * good;
 }
 
+double lift_by_weight(const uav::MultirotorParameters& airframe, double gravity_m_s2) {
+  return static_cast<double>(airframe.rotors.size()) * uav::max_rotor_thrust_N(airframe) /
+         (airframe.mass_kg * gravity_m_s2);
+}
+
 }  // namespace
 
 std::string set_at(const World& world) {
@@ -161,8 +166,11 @@ void check_step(const World& world, Controller controller, const WarningSink& wa
                     1e3 * to_seconds(world.step), loop.damping);
     const std::string advice =
         most_ms > 0.0 ? fmt::format("use a step of at most {:.1f} ms", most_ms)
-                      : "no step helps: its rotors are too slow (<time_constant_up_s>, "
-                        "<time_constant_down_s>)";
+                      : fmt::format(
+                            "no step helps: its rotors are too slow (<time_constant_up_s>, "
+                            "<time_constant_down_s>) or too weak (at full speed, they lift {:.2g} "
+                            "times its weight)",
+                            lift_by_weight(uav.airframe, world.gravity_m_s2));
     const std::string subject = fmt::format("UAV '{}'", uav.name);
     if (!is_stable && controller == Controller::kOurs)
       throw Error(ErrorCode::kBadFile,

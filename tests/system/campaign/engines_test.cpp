@@ -114,7 +114,7 @@ TEST_F(Shards, AreRefusedWhereOptionsContradict) {
            {file, "--shard", "3/2"},
            {file, "--shard", "1/2", "--engine", "slurm"},
            {file, "--collect", "a"},
-           {"--trials", "x"},
+           {"--listed", "x"},
            {"--collect", "a", "--shard", "1/2"},
            {file, "--engine-option", "options=x"},
            {file, "--engine", "parallel", "--engine-option", "x=1"},

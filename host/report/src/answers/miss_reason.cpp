@@ -52,11 +52,16 @@ bool have_same_radio(const Pace& a, const Pace& b) {
   return is_known && a.radio == b.radio;
 }
 
-/// What starts the programs, and what their computers draw.
+/// Of another architecture, it must be another build.
+bool is_same_program(const Speed::Program& one, const Speed::Program& other) {
+  return one.build == other.build || one.loader != other.loader;
+}
+
+/// What starts the programs, the programs, and what their computers draw.
 bool have_same_set_up(const Speed& a, const Speed& b) {
   return std::ranges::equal(a.programs, b.programs,
                             [](const Speed::Program& one, const Speed::Program& other) {
-                              return one.launcher == other.launcher && one.idle_W == other.idle_W &&
+                              return is_same_program(one, other) && one.launcher == other.launcher && one.idle_W == other.idle_W &&
                                      one.busy_core_W == other.busy_core_W;
                             });
 }

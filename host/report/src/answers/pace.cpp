@@ -114,6 +114,22 @@ Pace pace_of(const record::Record& record, const record::SutInfo& sut) {
   return pace;
 }
 
+constexpr std::string_view kLibrary = "library ", kLoader = "library ld-";
+
+/// Without libraries, which differ between machines.
+std::string build_of(const record::SutInfo& sut) {
+  std::string all = sut.build_id;
+  for (const record::BuildPart& part : sut.build)
+    if (!part.name.starts_with(kLibrary)) all += "\n" + part.name + " " + part.value;
+  return all;
+}
+
+std::string loader_of(const record::SutInfo& sut) {
+  const auto found = std::ranges::find_if(
+      sut.build, [](const auto& part) { return part.name.starts_with(kLoader); });
+  return found == sut.build.end() ? "" : found->name;
+}
+
 Speed speed_of(const record::Header& header) {
   Speed speed{.boards = header.boards, .machine = header.machine, .emulator = header.emulator};
   if (header.target) speed.target = header.target->name + " " + header.target->address;
@@ -125,6 +141,8 @@ Speed speed_of(const record::Header& header) {
                               .computer = sut.computer,
                               .launcher = sut.launcher,
                               .concurrent = sut.concurrent,
+                              .build = build_of(sut),
+                              .loader = loader_of(sut),
                               .pinned_core = sut.pinned_core,
                               .idle_W = sut.energy ? sut.energy->idle_W : 0.0,
                               .busy_core_W = sut.energy ? sut.energy->busy_core_W : 0.0});

@@ -110,16 +110,18 @@ constexpr std::array kDoubts = {
     "the program of {subject} waited {amount:.2g} s for the disk, which its clock does not count",
     "the program of {subject} waited {amount:.2g} s, which the clock's factor stretches although "
     "no computer changes it",
-    "the machine{subject} was busy or uneven: its times can be off by up to {percent:.0f} %",
+    "the program of {subject} waited {percent:.1f} % of its time on something that Tether does not "
+    "see",
+    "the machine{subject} was busy or uneven: its times can be off by {percent:.0f} % or more",
 };
 
 std::string doubt_text(const FlightsInDoubt& doubt, const ConditionVerdict& condition) {
   const campaign::Doubt& largest = doubt.largest;
   const std::size_t ended = condition.flown + condition.failed;
-  const std::string where =
-      ended > 1 ? fmt::format(", at most, in {} of {}", doubt.flights, counted(ended, "flight"))
-                : "";
   const bool is_of_uav = largest.kind != campaign::Doubt::Kind::kBusyMachine;
+  const std::string where = ended > 1 ? fmt::format("{} in {} of {}", is_of_uav ? ", at most," : ",",
+                                                    doubt.flights, counted(ended, "flight"))
+                                      : "";
   const std::string subject = is_of_uav || largest.subject.empty()
                                   ? largest.subject
                                   : fmt::format(" “{}”", largest.subject);
@@ -149,8 +151,10 @@ std::string doubts_text(const ConditionVerdict& condition) {
   std::string text;
   if (!condition.left_out.empty()) text += left_out_text(condition);
   for (const FlightsInDoubt& doubt : condition.doubts)
-    if (condition.ruling != Ruling::kUnseen ||
-        doubt.largest.kind == campaign::Doubt::Kind::kBusyMachine)
+    if (doubt.largest.is_of_unseen_time()
+            ? condition.ruling != Ruling::kUnseen
+            : doubt.largest.kind == campaign::Doubt::Kind::kBusyMachine ||
+                  is_within_spread(condition))
       text += " " + capital(doubt_text(doubt, condition)) + ".";
   if (condition.failed > 0 && condition.flown > 0)
     text += fmt::format(" {} failed and {} not counted.", counted(condition.failed, "flight"),
@@ -173,9 +177,7 @@ std::string doubts_text(const ConditionVerdict& condition) {
 }
 
 std::string undecided_text(const ConditionVerdict& condition) {
-  const FlightsInDoubt* busy = condition.doubt(campaign::Doubt::Kind::kBusyMachine);
-  if (busy != nullptr && condition.tightest &&
-      std::abs(condition.tightest->second) < busy->largest.amount)
+  if (is_within_spread(condition))
     return fmt::format(" The closest limit ({}, {}) is within the spread of the times.",
                        in_a_sentence(condition.tightest->first),
                        distance_text(condition.tightest->second));
@@ -199,7 +201,7 @@ std::string evidence_of(const ConditionVerdict& condition) {
     case Ruling::kUnseen: {
       std::vector<std::string> parts;
       for (const FlightsInDoubt& doubt : condition.doubts)
-        if (doubt.largest.kind != campaign::Doubt::Kind::kBusyMachine)
+        if (doubt.largest.is_of_unseen_time())
           parts.push_back(doubt_text(doubt, condition));
       return fmt::format("{}. What was flown on “{}” may differ from a real flight.",
                          joined_with_and(parts), condition.condition);

@@ -35,14 +35,21 @@ bool is_unsound(const campaign::TrialResult& trial) {
   return (has_ended && trial.audit && !trial.audit->passed) || trial.sync.causality_violations > 0;
 }
 
+/// One more would be beyond it, and nothing is known of how near that was.
+bool is_count_at_limit(const campaign::MetricValue& metric) {
+  const std::optional<double>& limit = metric.max ? metric.max : metric.min;
+  return metric.unit == "1" && metric.value && limit && *metric.value == *limit && *limit != 0.0;
+}
+
 /// What of the flight missed its limit. Empty: at most metrics without a value.
 std::vector<std::string> missed_in(const campaign::TrialResult& trial) {
   std::vector<std::string> missed;
-  if (has_crash(trial)) missed.emplace_back("“no crash”");
-  if (trial.end == campaign::kEndTimeLimit) missed.emplace_back("the time limit");
+  // A UAV without a battery falls.
   if (trial.end == campaign::kEndBatteryEmpty ||
       std::ranges::any_of(trial.energy, &campaign::UavEnergy::is_empty))
     missed.emplace_back("“battery not empty”");
+  if (has_crash(trial)) missed.emplace_back("“no crash”");
+  if (trial.end == campaign::kEndTimeLimit) missed.emplace_back("the time limit");
   for (const judge::ClauseVerdict& clause : trial.clauses)
     if (!clause.met) missed.push_back(fmt::format("“{}”", clause.name));
   for (const campaign::MetricValue& metric : trial.metrics)
@@ -99,7 +106,7 @@ void count(ConditionVerdict& verdict, const campaign::TrialResult& trial) {
     if (margin && (!worst || *margin < worst->second)) worst = {label, *margin};
   };
   for (const campaign::MetricValue& metric : trial.metrics)
-    compare(metric.label, margin_of(metric));
+    compare(metric.label, is_count_at_limit(metric) ? 0.0 : margin_of(metric));
   for (const judge::ClauseVerdict& clause : trial.clauses)
     compare(fmt::format("“{}”", clause.name), margin_of(clause));
   if (!worst) return;
@@ -116,20 +123,13 @@ void count(ConditionVerdict& verdict, const campaign::TrialResult& trial) {
     verdict.tightest = worst;
 }
 
-/// Whether a busy machine could have moved a flight over its limits.
-bool is_within_spread(const ConditionVerdict& verdict) {
-  const FlightsInDoubt* busy = verdict.doubt(campaign::Doubt::Kind::kBusyMachine);
-  return busy != nullptr && verdict.tightest &&
-         std::abs(verdict.tightest->second) < busy->largest.amount;
-}
-
 Ruling ruling_of(const ConditionVerdict& verdict, const campaign::ConditionResults& results) {
   const auto& trials = results.trials;
   if (verdict.unsound > 0) return Ruling::kVoid;
   if (verdict.flown == 0) return verdict.failed > 0 ? Ruling::kSetUpFailed : Ruling::kNotFlown;
   if (std::ranges::any_of(trials, is_free_running)) return Ruling::kFreeRunning;
   if (std::ranges::any_of(verdict.doubts, [](const FlightsInDoubt& doubt) {
-        return doubt.largest.kind != campaign::Doubt::Kind::kBusyMachine;
+        return doubt.largest.is_of_unseen_time();
       }))
     return Ruling::kUnseen;
   const bool all = verdict.reached == verdict.flown;
@@ -143,6 +143,14 @@ Ruling ruling_of(const ConditionVerdict& verdict, const campaign::ConditionResul
 }
 
 }  // namespace
+
+bool is_within_spread(const ConditionVerdict& verdict) {
+  return verdict.tightest &&
+         std::ranges::any_of(verdict.doubts, [&](const FlightsInDoubt& doubt) {
+           return !doubt.largest.is_of_unseen_time() &&
+                  std::abs(verdict.tightest->second) < doubt.largest.amount;
+         });
+}
 
 ConditionVerdict verdict_of(const campaign::ConditionResults& results) {
   ConditionVerdict verdict{.condition = results.condition, .planned = results.planned};
@@ -223,7 +231,10 @@ std::vector<Advice> advice_on(const ConditionVerdict& lead) {
       break;
     case Ruling::kUndecided:
     case Ruling::kFastEnoughSoFar:
-      if (is_within_spread(lead)) advice.push_back({Kind::kQuietMachine});
+      if (is_within_spread(lead))
+        advice.push_back({lead.doubt(campaign::Doubt::Kind::kBusyMachine) != nullptr
+                              ? Kind::kQuietMachine
+                              : Kind::kShowWaits});
       if (lead.flown > 1 && lead.is_one_flight())
         advice.push_back({Kind::kVarySeeds});
       else if (!is_within_spread(lead))

@@ -205,21 +205,13 @@ std::vector<Comparison> compare_where(const campaign::ScenarioResults& scenario,
   return comparisons;
 }
 
-// No SUT can be counted in free running. Beside a counted target, the CPU time of this machine is
-// the nearest to it.
-bool have_equal_clocks(const campaign::TrialResult& a, const campaign::TrialResult& b) {
-  if (!a.emulator.program.empty())
-    return b.condition == fmt::format("{}, no sync", without_clock(a.condition));
-  return a.clock == b.clock && a.target == b.target;
-}
-
 bool is_synchronised_twin(const campaign::ConditionResults& a,
                           const campaign::ConditionResults& b) {
   if (a.trials.empty() || b.trials.empty()) return false;
   const campaign::TrialResult &first_a = a.trials.front(), &first_b = b.trials.front();
   return first_a.policy == scenario::name(scenario::Policy::kConservativeBarrier) &&
          first_b.policy == scenario::name(scenario::Policy::kFreeRunning) &&
-         have_equal_clocks(first_a, first_b) && first_a.profiles == first_b.profiles;
+         first_a.clock == first_b.clock && first_a.target == first_b.target && first_a.profiles == first_b.profiles;
 }
 
 Table table_of(const campaign::ScenarioResults& scenario,

@@ -108,6 +108,11 @@ TEST_F(MissReasons, AreSpeedIfAFasterConditionReachesTheGoal) {
   program(board).launcher = "wrapper --wrong";
   expect_unknown("another launcher");
   program(board).launcher.clear();
+  program(board).build = "1f";
+  expect_unknown("another build");
+  program(board).loader = "library ld-linux-aarch64.so.1";
+  EXPECT_EQ(ruling(board), Ruling::kNotFastEnough) << "the build of another architecture";
+  program(board).build = program(board).loader = "";
   paces_[host]->median_s = 0.3;
   expect_unknown("not faster");
 }

@@ -90,7 +90,7 @@ TEST_F(Report, ShowsConditionsOfThePaperOnly) {
               ElementsAre("host (paper only)", "–", "–", "0", "0", "–", "–", "2.48", "0.033"));
 }
 
-TEST_F(Report, ComparesACountedConditionWithThatOfItsNameWithoutTheClock) {
+TEST_F(Report, ComparesACountedConditionWithThePapersOnly) {
   ScenarioResults counted = results();
   counted.conditions[1].condition = "target, counted";
   for (TrialResult& trial : counted.conditions[1].trials) {
@@ -101,10 +101,7 @@ TEST_F(Report, ComparesACountedConditionWithThatOfItsNameWithoutTheClock) {
   const Table table = paper_form_table(counted);
   ASSERT_EQ(table.rows.size(), 3u);
   EXPECT_EQ(table.rows[1].back(), "13.767") << "of the paper's target";
-  const auto found = optimism(counted);
-  ASSERT_EQ(found.size(), 2u);
-  EXPECT_EQ(found[1].a, "target, counted");
-  EXPECT_EQ(found[1].b, "target, no sync");
+  EXPECT_TRUE(optimism(counted).empty()) << "by other clocks, computers differ as well";
 }
 
 TEST_F(Report, BeforeTheFirstTrialHasRowsWithoutNumbers) {

@@ -15,6 +15,8 @@ ProgressReporter::ProgressReporter(Duration period, TimeSource& source,
     : period_(period), source_(source), report_(std::move(report)) {
   const SignalsBlocked blocked;
   thread_ = std::thread([this] { run(); });
+  // Not by itself: on a busy machine it begins late, and would be taken for one of the program's.
+  static_cast<void>(::pthread_setname_np(thread_.native_handle(), link::kClientThread));
 }
 
 ProgressReporter::~ProgressReporter() {
@@ -27,7 +29,6 @@ ProgressReporter::~ProgressReporter() {
 }
 
 void ProgressReporter::run() {
-  static_cast<void>(::pthread_setname_np(::pthread_self(), link::kClientThread));
   source_.exclude_calling_thread();
   std::unique_lock lock(mutex_);
   while (!stop_.wait_for(lock, period_, [this] { return stopping_; }) && report_()) {

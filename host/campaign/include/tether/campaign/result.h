@@ -149,15 +149,23 @@ struct Doubt {
                        ///< time over wall time, > 1
     kDiskWait,         ///< the program waited for the disk, which its clock does not count; s
     kStretchedWait,    ///< the program waited, and a factor made more of it; s, as it was
-    kBusyMachine,      ///< the machine was busy or uneven; amount: MachineLoad::block_spread
+    kSlightWait,       ///< as the first, too short to matter unless a limit is as close; amount:
+                       ///< share of its time
+    kBusyMachine,      ///< the machine was busy or uneven; amount: MachineLoad::block_spread or,
+                       ///< if more, `others`
   };
   Kind kind = Kind::kUnseenWait;
   std::string subject;  ///< the UAV of the program, or the board; empty: this machine
   double amount = 0.0;
 
+  /// Without this one, the times would be other ones: nothing is known of the computer. Otherwise
+  /// the amount says by how much they can be off.
+  bool is_of_unseen_time() const { return kind < Kind::kSlightWait; }
+
   friend bool operator==(const Doubt&, const Doubt&) = default;
 };
-/// "unseen_wait", "parallel_threads", "disk_wait", "stretched_wait", "busy_machine".
+/// "unseen_wait", "parallel_threads", "disk_wait", "stretched_wait", "slight_wait",
+/// "busy_machine".
 std::string_view name(Doubt::Kind kind);
 
 /// How far a machine on which execution time was measured was from idle and even during a run.

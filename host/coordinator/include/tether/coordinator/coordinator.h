@@ -107,6 +107,7 @@ struct SutLooks {
   Duration on_disk{0};         ///< none was runnable or halted, and one on the disk
   Duration computing{0};       ///< some were runnable
   Duration of_all_threads{0};  ///< the same, added up over them
+  int parallel_looks = 0;      ///< of these, looks that found several
 
   /// Adds a look that counts for so long.
   void add(const ThreadStates& states, Duration represented);
