@@ -14,6 +14,7 @@
 #include <CLI/CLI.hpp>
 #include <unistd.h>
 
+#include <tether/base/suggest.h>
 #include <tether/base/units.h>
 #include <tether/base/version.h>
 #include <tether/calibration/profile_text.h>
@@ -325,6 +326,7 @@ struct Words {
   calibration::CharacterizeOptions characterize;
   calibration::CalibrateOptions calibrate;
   std::string mission_file;
+  std::vector<std::string> anchors;  ///< of the world; empty: not known
 };
 
 /// `define` adds the subcommand's own options.
@@ -335,6 +337,10 @@ CLI::App* add_subcommand(CLI::App& app, std::string_view name, std::string_view 
   define(*command);
   command->add_flag("--check", words.line.only_checks,
                     "Only read these options and their files: exit code 2 if something is wrong");
+  command
+      ->add_option("--anchors", words.anchors,
+                   "With --check: the anchors of the world; a task that needs another one is wrong")
+      ->type_name("NAME");
   add_link_options(*command, words.line);
   add_device_options(*command, words.devices);
   command->footer(footer_of(name));
@@ -425,10 +431,21 @@ Status check_link(const CommandLine& line) {
   return ok_status();
 }
 
+Status check_anchors(const rig::Mission& mission, const std::vector<std::string>& anchors) {
+  const std::vector<std::string_view> names(anchors.begin(), anchors.end());
+  for (const rig::TaskSpec& task : mission.tasks)
+    if (!names.empty() && !task.anchor.empty() && std::ranges::count(names, task.anchor) == 0)
+      return Failure{Failure::Kind::kInvalid, "the scenario has no anchor \"" + task.anchor +
+                                                  "\"; " + allowed_hint(task.anchor, names)};
+  return ok_status();
+}
+
 /// The command line from what CLI11 has parsed.
 std::variant<CommandLine, Refusal> understand(const CLI::App& app, Words& words) {
   if (const Status mission = take_command(app, words); !mission)
     return refusal(mission.failure().message);
+  if (const Status anchors = check_anchors(words.line.mission, words.anchors); !anchors)
+    return refusal(anchors.failure().message);
   Result<std::optional<devices::Rig>> rig = make_rig(words.devices, words.line.mission);
   if (!rig) return refusal(rig.failure().message);
   words.line.rig = std::move(rig).value();

@@ -235,6 +235,15 @@ TEST(CommandLine, RejectsOptionsThatCannotBeCombined) {
   for (const auto& [arguments, option] : cases) EXPECT_THAT(refused(arguments), HasSubstr(option));
 }
 
+TEST(CommandLine, RejectsAnAnchorThatTheWorldLacks) {
+  const std::string line = "face_anchor --anchor blue_bx --check --anchors blue_box --anchors red";
+  EXPECT_THAT(refused(line), HasSubstr("the scenario has no anchor \"blue_bx\"; did you mean "
+                                       "'blue_box'?"));
+  EXPECT_TRUE(
+      parsed("face_anchor --anchor red --check --anchors blue_box --anchors red").only_checks);
+  EXPECT_TRUE(parsed("face_anchor --anchor red --check").only_checks) << "not known";
+}
+
 TEST(CommandLine, RejectsMissingUnknownAndInvalidArguments) {
   for (const char* arguments : {"",
                                 "take_off",

@@ -177,6 +177,8 @@ void try_suts(const scenario::Scenario& scenario, const scenario::Condition& con
     LocalSutCommand command = local_sut_command(alone, own.target);
     if (command.programs.size() == 1) command.words.front() = command.programs.front().string();
     command.words.emplace_back("--check");
+    for (const std::string& anchor : scenario.anchors)
+      command.words.insert(command.words.end(), {"--anchors", anchor});
     const os::Captured checked = os::run_captured(command.words, "", kLimit);
     if (checked.code != kWrongUse) continue;
     throw Error(ErrorCode::kBadFile, scenario.where("command"),

@@ -153,8 +153,8 @@ std::string doubts_text(const ConditionVerdict& condition) {
   for (const FlightsInDoubt& doubt : condition.doubts)
     if (doubt.largest.is_of_unseen_time()
             ? condition.ruling != Ruling::kUnseen
-            : doubt.largest.kind == campaign::Doubt::Kind::kBusyMachine ||
-                  is_within_spread(condition))
+            : condition.flown > 0 && (doubt.largest.kind == campaign::Doubt::Kind::kBusyMachine ||
+                                      is_within_spread(condition)))
       text += " " + capital(doubt_text(doubt, condition)) + ".";
   if (condition.failed > 0 && condition.flown > 0)
     text += fmt::format(" {} failed and {} not counted.", counted(condition.failed, "flight"),
