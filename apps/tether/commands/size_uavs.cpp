@@ -154,7 +154,8 @@ int find_uavs(const SizeOptions& options, const std::stop_token& stop) {
   const bool is_unseen = std::ranges::any_of(report.points, [](const report::UavsPoint& point) {
     return std::ranges::any_of(point.trials, &campaign::TrialResult::has_unseen_time);
   });
-  return report.answer.is_decided() && !is_unseen ? 0 : 1;
+  const bool carries = report.answer.carried >= report.question.least;
+  return report.answer.is_decided() && carries && !is_unseen ? 0 : 1;
 }
 
 }  // namespace tether::app

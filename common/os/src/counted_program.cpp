@@ -42,7 +42,8 @@ std::filesystem::path find_counter_plugin() {
     if (is_file(prefix / folder / kPlugin)) return prefix / folder / kPlugin;
   throw Error(ErrorCode::kSetup, std::string("Tether's plugin for emulators (") + kPlugin +
                                      ") was not found in " + (prefix / "lib/tether").string() +
-                                     ". Install the package tether-counter")
+                                     ". Install the package tether-counter, or the component of that name "
+                                     "(cmake --install)")
       .about(kPlugin);
 }
 

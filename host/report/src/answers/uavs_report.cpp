@@ -139,7 +139,8 @@ std::vector<std::string> uavs_advice(const UavsReport& report) {
   if (answer.too_many <= report.question.most) {
     if (const auto& pace = report.pace.pace; pace && !pace->stages.empty())
       advice.push_back(fmt::format(
-          "To carry more, speed up “{}” first: it takes {:.0f} % of the computing time.",
+          "To carry {}, speed up “{}” first: it takes {:.0f} % of the computing time.",
+          answer.is_decided() && answer.carried < report.question.least ? "them" : "more",
           pace->stages.front().stage, 100.0 * pace->stages.front().share));
     advice.push_back(
         fmt::format("To see how much faster the board must be to carry all: `tether "
