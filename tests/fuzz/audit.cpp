@@ -3,7 +3,7 @@
 #include <array>
 
 #include <tether/audit/audit.h>
-#include <tether/record/canonical.h>
+#include <tether/record_testing/canonical.h>
 
 /// The audit, with records that no coordinator writes. Input: the record, field by field; all of a
 /// record's numbers may be anything.

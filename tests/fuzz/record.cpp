@@ -5,9 +5,9 @@
 #include <string>
 
 #include <tether/audit/audit.h>
-#include <tether/record/canonical.h>
 #include <tether/record/reader.h>
 #include <tether/record/writer.h>
+#include <tether/record_testing/canonical.h>
 
 /// Records: reader, audit, and writing again what was read. Input: the file. CRCs that are 0 are
 /// not checked, and chunks need not be compressed, so that most seeds are of that kind.

@@ -40,10 +40,11 @@ std::filesystem::path find_counter_plugin() {
   const auto prefix = own_file().parent_path().parent_path();
   for (const char* folder : {"lib", "lib/tether"})
     if (is_file(prefix / folder / kPlugin)) return prefix / folder / kPlugin;
-  throw Error(ErrorCode::kSetup, std::string("Tether's plugin for emulators (") + kPlugin +
-                                     ") was not found in " + (prefix / "lib/tether").string() +
-                                     ". Install the package tether-counter, or the component of that name "
-                                     "(cmake --install)")
+  throw Error(ErrorCode::kSetup,
+              std::string("Tether's plugin for emulators (") + kPlugin + ") was not found in " +
+                  (prefix / "lib/tether").string() +
+                  ". Install the package tether-counter, or the component of that name "
+                  "(cmake --install)")
       .about(kPlugin);
 }
 

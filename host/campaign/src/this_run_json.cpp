@@ -9,9 +9,9 @@
 namespace tether::campaign {
 namespace {
 
-constexpr std::array<std::string_view, 6> kDoubts = {
-    "unseen_wait", "parallel_threads", "disk_wait", "stretched_wait", "slight_wait",
-    "busy_machine"};
+constexpr std::array<std::string_view, 6> kDoubts = {"unseen_wait", "parallel_threads",
+                                                     "disk_wait",   "stretched_wait",
+                                                     "slight_wait", "busy_machine"};
 
 Json json_of(const TargetReport& target) {
   return Json{{"name", target.name},         {"address", target.address},

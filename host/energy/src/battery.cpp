@@ -14,17 +14,6 @@ double open_circuit_voltage_V(const Battery& battery, double charge) {
   return from_V + (to_V - from_V) * (charge - from) / (to - from);
 }
 
-double stored_energy_J(const Battery& battery, double charge) {
-  double integral = 0.0;
-  const auto& points = battery.voltage_at_charge;
-  for (std::size_t i = 1; i < points.size() && points[i - 1].first < charge; ++i) {
-    const double to = std::min(charge, points[i].first);
-    integral += (to - points[i - 1].first) *
-                (points[i - 1].second + open_circuit_voltage_V(battery, to)) / 2.0;
-  }
-  return integral * battery.capacity_C;
-}
-
 // P = (U − R I) I, of whose two currents the smaller one flows.
 Discharge discharge(const Battery& battery, double charge, double power_W) {
   const double open_V = open_circuit_voltage_V(battery, charge);

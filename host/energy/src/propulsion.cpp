@@ -65,38 +65,4 @@ double propulsion_power_W(const uav::MultirotorParameters& airframe, const Propu
   return sum_W / propulsion.efficiency;
 }
 
-double level_flight_power_W(const uav::MultirotorParameters& airframe, const Propulsion& propulsion,
-                            double gravity_m_s2, double speed_m_s) {
-  const auto rotors = static_cast<double>(airframe.rotors.size());
-  const double weight_N = airframe.mass_kg * gravity_m_s2;
-  double thrust_N = weight_N, speed_rad_s = 0.0, sine = 0.0;
-  // The drag depends on the rotors' speed, which depends on the thrust that overcomes it.
-  for (int i = 0; i < 50; ++i) {
-    speed_rad_s = std::sqrt(thrust_N / rotors / airframe.thrust_coefficient);
-    const double drag_N =
-        (rotors * airframe.drag_coefficient * speed_rad_s + airframe.linear_drag_N_s_m) * speed_m_s;
-    thrust_N = std::hypot(weight_N, drag_N);
-    sine = drag_N / thrust_N;
-  }
-  const uav::Vec3 v_hub_B{speed_m_s * std::sqrt(1.0 - sine * sine), 0.0, speed_m_s * sine};
-  return rotors * rotor_power(airframe, propulsion, speed_rad_s, v_hub_B).total_w() /
-         propulsion.efficiency;
-}
-
-double best_range_speed_m_s(const uav::MultirotorParameters& airframe, const Propulsion& propulsion,
-                            double gravity_m_s2, double other_W) {
-  double best_m_s = 0.0, least_J_m = 0.0;
-  constexpr int kPlaces = 1000;
-  for (int i = 1; i <= kPlaces; ++i) {
-    const double speed_m_s = airframe.max_horizontal_speed_m_s * i / kPlaces;
-    const double J_m =
-        (level_flight_power_W(airframe, propulsion, gravity_m_s2, speed_m_s) + other_W) / speed_m_s;
-    if (best_m_s == 0.0 || J_m < least_J_m) {
-      best_m_s = speed_m_s;
-      least_J_m = J_m;
-    }
-  }
-  return best_m_s;
-}
-
 }  // namespace tether::energy

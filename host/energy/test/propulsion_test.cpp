@@ -1,3 +1,4 @@
+#include "known_energy.h"
 #include "test_model.h"
 
 #include <cmath>

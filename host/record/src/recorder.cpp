@@ -149,23 +149,6 @@ class McapRecorder final : public Recorder {
   bool finished_ = false;
 };
 
-class NullRecorder final : public Recorder {
- public:
-  void write(const Header&) override {}
-  void write(SimTime, const Interaction&) override {}
-  void write(SimTime, const CommandEffect&) override {}
-  void write(SimTime, const GroundTruth&) override {}
-  void write(SimTime, const Annotation&) override {}
-  void write(SimTime, const Stop&) override {}
-  void write(SimTime, const Contact&) override {}
-  void write(SimTime, const Battery&) override {}
-  void write(SimTime, const RadioMessage&) override {}
-  void write(SimTime, const Image&) override {}
-  void write(SimTime, const RawImage&) override {}
-  void flush() override {}
-  void write(const Footer&) override {}
-};
-
 }  // namespace
 
 std::unique_ptr<Recorder> make_mcap_recorder(const std::filesystem::path& file) {
@@ -183,10 +166,6 @@ void write_margins(const std::filesystem::path& file, std::vector<Margin> margin
     mcap.end_message();
   }
   mcap.finish();
-}
-
-std::unique_ptr<Recorder> make_null_recorder() {
-  return std::make_unique<NullRecorder>();
 }
 
 }  // namespace tether::record

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include <tether/record/canonical.h>
+#include <tether/record_testing/canonical.h>
 
 namespace tether::record {
 namespace {

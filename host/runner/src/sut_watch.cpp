@@ -70,8 +70,7 @@ std::vector<campaign::Doubt> doubts_of(const coordinator::SutReport& sut,
     doubts.push_back({Kind::kDiskWait, sut.uav, on_disk_s});
   const double computing_s = to_seconds(looks.computing);
   const double of_all_s = to_seconds(looks.of_all_threads);
-  if (clock.kind == computer::ClockKind::kCpu &&
-      looks.parallel_looks >= kLeastParallelLooks &&
+  if (clock.kind == computer::ClockKind::kCpu && looks.parallel_looks >= kLeastParallelLooks &&
       (of_all_s - computing_s) * clock.factor > least_s &&
       of_all_s > kDoubtfulThreads * computing_s)
     doubts.push_back({Kind::kParallelThreads, sut.uav, of_all_s / computing_s});

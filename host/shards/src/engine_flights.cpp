@@ -28,6 +28,11 @@ using Plans = std::vector<const TrialPlan*>;
 
 constexpr int kMostCalls = 3;
 constexpr Duration kCancelLimit = std::chrono::seconds(30);
+constexpr Duration kMostPause = std::chrono::milliseconds(200);  // before a stop request is seen
+
+Duration now() {
+  return os::read_clock(CLOCK_MONOTONIC);
+}
 
 /// Cores that a shard needs; 0: its trials need a machine of their own.
 int cores_of(std::span<const TrialPlan* const> plans) {
@@ -47,7 +52,7 @@ int cores_of(std::span<const TrialPlan* const> plans) {
   return most;
 }
 
-/// The last words of the engine, else of a shard: its log is beside that of the engine.
+/// The last words of the engine, else of a shard, whose log is beside that of the engine.
 std::string last_words(const fs::path& folder) {
   std::vector<fs::path> logs;
   std::error_code ignored;
@@ -146,13 +151,14 @@ class Flights {
                              .environment = {},
                              .log = folder / "engine.log",
                              .input = folder / "input"});
-    Duration pause = setup_.look_period;
-    while (!engine.wait(pause)) {
+    Duration next_look = now() + setup_.look_period;
+    while (!engine.wait(std::min(setup_.look_period, kMostPause))) {
       if (stop_.stop_requested()) return cancel(engine, call);
-      // Looking must not load the server of a shared folder.
-      const Duration began = os::read_clock(CLOCK_MONOTONIC);
+      const Duration began = now();
+      if (began < next_look) continue;
       look();
-      pause = std::max(setup_.look_period, 20 * (os::read_clock(CLOCK_MONOTONIC) - began));
+      // Looking must not load the server of a shared folder.
+      next_look = now() + std::max(setup_.look_period, 20 * (now() - began));
     }
     look();
   }
@@ -173,9 +179,11 @@ class Flights {
     const fs::path file = call.folder / "trials.json";
     os::write_file_atomically(file, to_json(list));
     os::write_file_atomically(
-        call.script, fmt::format("#!/bin/sh\n# Flies part $1 of {}.\ncd {} || exit 3\nexec {}\n",
-                                 call.shards, os::shell_word(fs::current_path().string()),
-                                 setup_.shard_command(file, call.shards)));
+        call.script,
+        fmt::format("#!/bin/sh\n# Flies part $1 of {}.\ncd {} || exit 3\n"
+                    "exec {} > {}/shard-$1.log 2>&1\n",
+                    call.shards, os::shell_word(fs::current_path().string()),
+                    setup_.shard_command(file, call.shards), os::shell_word(call.folder.string())));
     fs::permissions(call.script, fs::perms(0755));
   }
 

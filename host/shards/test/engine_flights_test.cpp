@@ -94,10 +94,9 @@ TEST_F(EngineFlights, FlyAgainWhatKilledShardsLeft) {
 
 TEST_F(EngineFlights, EndWhereACallBringsNothingAndSayWhy) {
   write_shard("case \"$t\" in *0003) echo 'no such node' >&2; exit 1;; esac");
-  setup_.engine.command = {"sh", "-c", "for i in 1 2; do {script} $i > {folder}/$i.log 2>&1; done"};
   const Error error = thrown_error(ErrorCode::kSetup, [&] { fly(); });
   EXPECT_THAT(error.what(), HasSubstr("of 13 trials have no result, because their shards ended "
-                                      "(1.log: no such node). Correct that"));
+                                      "(shard-1.log: no such node). Correct that"));
   EXPECT_GT(results(), 0u);
   EXPECT_LT(results(), 9u);
 }

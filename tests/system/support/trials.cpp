@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 
 #include <tether/base/error.h>
-#include <tether/record/canonical.h>
 #include <tether/record/writer.h>
+#include <tether/record_testing/canonical.h>
 
 namespace tether::system_test {
 namespace {

@@ -65,9 +65,10 @@ std::string stage_advice(const Advice& advice, const ConditionVerdict& lead) {
   return fmt::format(
       "Speed up “{}” first. {} up to {} per image, and the camera has one every {}: it is {} × too "
       "slow to read them all.",
-      advice.subject, shares  ? "Computing and waiting for cores take"
-                        : waits ? "Computing and whatever the program waits for take"
-                                : "Computing takes",
+      advice.subject,
+      shares  ? "Computing and waiting for cores take"
+      : waits ? "Computing and whatever the program waits for take"
+              : "Computing takes",
       short_ms(lead.pace->p95_s), short_ms(1.0 / *lead.pace->offered_hz),
       fixed(1.0 / *lead.pace->headroom(), 1));
 }

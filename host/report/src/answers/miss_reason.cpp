@@ -59,11 +59,11 @@ bool is_same_program(const Speed::Program& one, const Speed::Program& other) {
 
 /// What starts the programs, the programs, and what their computers draw.
 bool have_same_set_up(const Speed& a, const Speed& b) {
-  return std::ranges::equal(a.programs, b.programs,
-                            [](const Speed::Program& one, const Speed::Program& other) {
-                              return is_same_program(one, other) && one.launcher == other.launcher && one.idle_W == other.idle_W &&
-                                     one.busy_core_W == other.busy_core_W;
-                            });
+  return std::ranges::equal(
+      a.programs, b.programs, [](const Speed::Program& one, const Speed::Program& other) {
+        return is_same_program(one, other) && one.launcher == other.launcher &&
+               one.idle_W == other.idle_W && one.busy_core_W == other.busy_core_W;
+      });
 }
 
 bool differ_in_speed_only(const Compared& a, const Compared& b) {

@@ -119,9 +119,10 @@ std::string doubt_text(const FlightsInDoubt& doubt, const ConditionVerdict& cond
   const campaign::Doubt& largest = doubt.largest;
   const std::size_t ended = condition.flown + condition.failed;
   const bool is_of_uav = largest.kind != campaign::Doubt::Kind::kBusyMachine;
-  const std::string where = ended > 1 ? fmt::format("{} in {} of {}", is_of_uav ? ", at most," : ",",
-                                                    doubt.flights, counted(ended, "flight"))
-                                      : "";
+  const std::string where = ended > 1
+                                ? fmt::format("{} in {} of {}", is_of_uav ? ", at most," : ",",
+                                              doubt.flights, counted(ended, "flight"))
+                                : "";
   const std::string subject = is_of_uav || largest.subject.empty()
                                   ? largest.subject
                                   : fmt::format(" “{}”", largest.subject);
@@ -201,8 +202,7 @@ std::string evidence_of(const ConditionVerdict& condition) {
     case Ruling::kUnseen: {
       std::vector<std::string> parts;
       for (const FlightsInDoubt& doubt : condition.doubts)
-        if (doubt.largest.is_of_unseen_time())
-          parts.push_back(doubt_text(doubt, condition));
+        if (doubt.largest.is_of_unseen_time()) parts.push_back(doubt_text(doubt, condition));
       return fmt::format("{}. What was flown on “{}” may differ from a real flight.",
                          joined_with_and(parts), condition.condition);
     }

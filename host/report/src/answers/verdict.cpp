@@ -145,8 +145,7 @@ Ruling ruling_of(const ConditionVerdict& verdict, const campaign::ConditionResul
 }  // namespace
 
 bool is_within_spread(const ConditionVerdict& verdict) {
-  return verdict.tightest &&
-         std::ranges::any_of(verdict.doubts, [&](const FlightsInDoubt& doubt) {
+  return verdict.tightest && std::ranges::any_of(verdict.doubts, [&](const FlightsInDoubt& doubt) {
            return !doubt.largest.is_of_unseen_time() &&
                   std::abs(verdict.tightest->second) < doubt.largest.amount;
          });

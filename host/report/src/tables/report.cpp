@@ -211,7 +211,8 @@ bool is_synchronised_twin(const campaign::ConditionResults& a,
   const campaign::TrialResult &first_a = a.trials.front(), &first_b = b.trials.front();
   return first_a.policy == scenario::name(scenario::Policy::kConservativeBarrier) &&
          first_b.policy == scenario::name(scenario::Policy::kFreeRunning) &&
-         first_a.clock == first_b.clock && first_a.target == first_b.target && first_a.profiles == first_b.profiles;
+         first_a.clock == first_b.clock && first_a.target == first_b.target &&
+         first_a.profiles == first_b.profiles;
 }
 
 Table table_of(const campaign::ScenarioResults& scenario,

@@ -1,3 +1,4 @@
+#include "answers/flights.h"
 #include "sample_results.h"
 
 #include <gmock/gmock.h>
@@ -17,21 +18,6 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
 
-/// `reached` flights on "target" that reach the goal and `missed` that take longer than 5 s.
-campaign::ScenarioResults flights(std::size_t reached, std::size_t missed) {
-  std::vector<double> times_s(reached, 4.0);
-  times_s.resize(reached + missed, 6.0);
-  campaign::ScenarioResults scenario = sample_results({{"target", times_s}});
-  for (TrialResult& trial : scenario.conditions[0].trials) {
-    trial.policy = "conservative_barrier";
-    trial.end = campaign::kEndFinished;
-    trial.metrics[0].max = 5.0;
-    trial.this_run.size_arguments = {"turn", "--condition", "target"};
-    if (!trial.metrics[0].is_met()) trial.outcome = Outcome::kGoalMissed;
-  }
-  return scenario;
-}
-
 Pace slow_pace() {
   return {.uav = "uav1",
           .seed = 1,
@@ -42,10 +28,6 @@ Pace slow_pace() {
           .offered_hz = 30.0,
           .median_s = 0.1,
           .p95_s = 0.11};
-}
-
-Ruling ruling_of(const campaign::ScenarioResults& scenario) {
-  return verdict_of(scenario).conditions[0].ruling;
 }
 
 // Exact intervals: 6 of 10 has 26 to 88 %, 7 of 10 35 to 93 %, 35 of 35 90.0 to 100 %.
@@ -416,65 +398,6 @@ TEST(Verdict, OfASweepNamesWhatLimitsItsPoints) {
   EXPECT_EQ(answers[0].lead, "Fast enough so far, but not everything is simulated as written");
   EXPECT_THAT(answers[0].rest, HasSubstr("<wind>"));
   EXPECT_THAT(answers[1].rest, HasSubstr("The first reason: the board is not found."));
-}
-
-TEST(Verdict, OfACrashOnABusyMachineIsNotUndecided) {
-  campaign::ScenarioResults scenario = flights(0, 1);
-  campaign::TrialResult& trial = scenario.conditions[0].trials[0];
-  trial.contacts = {{.uav = "uav1", .count = 1, .hard = 1}};
-  trial.this_run.doubts = {{campaign::Doubt::Kind::kBusyMachine, "", 3.0}};
-  EXPECT_EQ(ruling_of(scenario), Ruling::kGoalMissed);
-}
-
-// The closest limit has 20 % left, and is missed by 20 %.
-TEST(Verdict, OfABusyMachineHoldsIfItsSpreadCannotChangeIt) {
-  for (const std::size_t reached : {0U, 1U}) {
-    campaign::ScenarioResults scenario = flights(reached, 1 - reached);
-    std::vector<campaign::Doubt>& doubts = scenario.conditions[0].trials[0].this_run.doubts;
-    const Ruling before = ruling_of(scenario);
-    doubts = {{campaign::Doubt::Kind::kBusyMachine, "", 0.15}};
-    EXPECT_EQ(ruling_of(scenario), before);
-    EXPECT_THAT(answers_of({verdict_of(scenario)})[0].rest,
-                HasSubstr(" The machine was busy or uneven: its times can be off by 15 % or "
-                          "more."));
-    doubts[0].amount = 0.3;
-    EXPECT_EQ(ruling_of(scenario), Ruling::kUndecided);
-    EXPECT_THAT(answers_of({verdict_of(scenario)})[0].rest, HasSubstr("within the spread"));
-    EXPECT_EQ(verdict_of(scenario).advice[0].kind, Advice::Kind::kQuietMachine);
-  }
-}
-
-// The closest limit has 20 % left.
-TEST(Verdict, OfAProgramThatWaitedALittleHoldsIfThatCannotChangeIt) {
-  campaign::ScenarioResults scenario = flights(1, 0);
-  std::vector<campaign::Doubt>& doubts = scenario.conditions[0].trials[0].this_run.doubts;
-  doubts = {{campaign::Doubt::Kind::kSlightWait, "uav1", 0.03}};
-  EXPECT_EQ(ruling_of(scenario), Ruling::kFastEnoughSoFar);
-  EXPECT_THAT(answers_of({verdict_of(scenario)})[0].rest, testing::Not(HasSubstr("waited")));
-  doubts[0].amount = 0.21;
-  EXPECT_EQ(ruling_of(scenario), Ruling::kUndecided);
-  EXPECT_THAT(answers_of({verdict_of(scenario)})[0].rest,
-              testing::AllOf(HasSubstr("within the spread"),
-                             HasSubstr("waited 21.0 % of its time on something that Tether")));
-  EXPECT_EQ(verdict_of(scenario).advice[0].kind, Advice::Kind::kShowWaits);
-}
-
-// One more would be beyond the limit.
-TEST(Verdict, OfACountAtItsLimitIsUndecidedOnABusyMachine) {
-  campaign::ScenarioResults scenario = flights(1, 0);
-  campaign::TrialResult& trial = scenario.conditions[0].trials[0];
-  campaign::MetricValue count = trial.metrics[0];
-  count.label = "Oscillations";
-  count.unit = "1";
-  count.value = count.max = 1.0;
-  trial.metrics.push_back(count);
-  EXPECT_EQ(ruling_of(scenario), Ruling::kFastEnoughSoFar);
-  trial.this_run.doubts = {{campaign::Doubt::Kind::kBusyMachine, "", 0.15}};
-  EXPECT_EQ(ruling_of(scenario), Ruling::kUndecided);
-  EXPECT_THAT(answers_of({verdict_of(scenario)})[0].rest,
-              HasSubstr("The closest limit (oscillations, at the limit) is within the spread"));
-  trial.metrics.back().value = 0.0;
-  EXPECT_EQ(ruling_of(scenario), Ruling::kFastEnoughSoFar);
 }
 
 TEST(Verdict, NamesWhatOfTheWorldIsMissing) {

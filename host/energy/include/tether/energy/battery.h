@@ -18,9 +18,6 @@ struct Battery {
 
 /// @param charge in [0, 1]
 double open_circuit_voltage_V(const Battery& battery, double charge);
-/// The energy from that charge down to none [J], at the open-circuit voltage: what the battery
-/// loses.
-double stored_energy_J(const Battery& battery, double charge);
 
 /// What a battery gives at one instant.
 struct Discharge {

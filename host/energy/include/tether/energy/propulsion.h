@@ -37,13 +37,4 @@ RotorPower rotor_power(const uav::MultirotorParameters& airframe, const Propulsi
 double propulsion_power_W(const uav::MultirotorParameters& airframe, const Propulsion& propulsion,
                           const uav::MultirotorState& rotors, const uav::BodyState& body);
 
-/// The same in steady level flight at that speed, with the tilt and thrust that drag demands.
-double level_flight_power_W(const uav::MultirotorParameters& airframe, const Propulsion& propulsion,
-                            double gravity_m_s2, double speed_m_s);
-
-/// The speed of steady level flight with the least energy per metre, up to
-/// `max_horizontal_speed_m_s`. @param other_W what the UAV also draws, at any speed.
-double best_range_speed_m_s(const uav::MultirotorParameters& airframe, const Propulsion& propulsion,
-                            double gravity_m_s2, double other_W);
-
 }  // namespace tether::energy

@@ -53,7 +53,4 @@ struct Margin {
 /// @throws Error(kSetup) as make_mcap_recorder.
 void write_margins(const std::filesystem::path& file, std::vector<Margin> margins);
 
-/// Discards everything.
-std::unique_ptr<Recorder> make_null_recorder();
-
 }  // namespace tether::record

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <string_view>
 
-#include <tether/record/canonical.h>
+#include <tether/record_testing/canonical.h>
 
 namespace tether::record {
 namespace {
