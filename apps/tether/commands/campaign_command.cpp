@@ -64,12 +64,10 @@ void require_one_task(const CampaignOptions& options) {
     throw Error(ErrorCode::kUsage,
                 "give a campaign, or --collect FOLDER…, or --listed FILE, and only one of them.")
         .about("campaign");
-  if (!options.listed.empty() && options.shard.empty())
-    refuse_option("--listed", "needs --shard K/N.");
   if (!options.shard.empty() && !options.engine.engine.empty())
     refuse_option("--shard", "is for flights without --engine, which starts shards itself.");
-  if (!options.shard.empty() && !options.collect.empty())
-    refuse_option("--shard", "does not apply to --collect.");
+  if (!options.shard.empty() && options.campaign.empty())
+    refuse_option("--shard", "is for a campaign.");
 }
 
 campaign::CampaignOutcome with_bar(
@@ -85,8 +83,8 @@ campaign::CampaignOutcome with_bar(
   }
 }
 
-/// Part of a list of trials, as an engine's script has it flown. The list is in a folder of its own
-/// in that of shards, in the campaign's.
+/// A list of trials, as an engine's script has it flown. It is in a folder of its own in that of
+/// shards, in the campaign's.
 int fly_listed(const CampaignOptions& options, const std::stop_token& stop) {
   const shards::TrialList list =
       shards::parse_trial_list(os::read_file(options.listed), options.listed);
@@ -94,8 +92,7 @@ int fly_listed(const CampaignOptions& options, const std::stop_token& stop) {
       std::filesystem::absolute(options.listed).parent_path().parent_path().parent_path();
   runner::TrialServers servers;
   const auto outcome = with_bar([&](const campaign::ProgressCallback& progress) {
-    return runner::fly_shard(list, campaign, shards::parse_shard(options.shard),
-                             options.jobs.value_or(1), servers, stop, progress);
+    return runner::fly_shard(list, campaign, {}, options.jobs.value_or(1), servers, stop, progress);
   });
   return outcome.interrupted || outcome.failed > 0 ? exit_code(ErrorCode::kSetup) : 0;
 }

@@ -199,7 +199,7 @@ void add_campaign_command(CLI::App& program, Action& action) {
                       "Bring the results of these folders of a campaign together in the first one, "
                       "or in that of --out, and report what is missing");
   command->add_option("--listed", options->listed,
-                      "Fly trials of this list, which an engine's script names, with --shard");
+                      "Fly the trials of this list, which an engine's script names");
   add_simulator_option(*command, options->simulator);
   add_junit_option(*command, options->junit);
   add_reading_options(*command, options->reading);

@@ -36,17 +36,12 @@ int jobs_of(const std::optional<int>& given, const std::optional<shards::Engine>
 shards::EngineSetup engine_setup(const shards::Engine& engine, int jobs,
                                  const std::filesystem::path& campaign,
                                  const std::vector<std::filesystem::path>& files) {
-  const auto command = [](const std::filesystem::path& list, std::size_t shards) {
-    return fmt::format("{} campaign --listed {} --shard \"$1/{}\"",
-                       os::shell_word(os::own_file().string()), os::shell_word(list.string()),
-                       shards);
-  };
   return {
       .engine = engine,
       .shards = static_cast<std::size_t>(jobs),
       .campaign = campaign,
       .files = files,
-      .shard_command = command,
+      .shard_command = os::shell_word(os::own_file().string()) + " campaign --listed",
       .request = [](const campaign::TrialPlan& plan) { return to_json(runner::request_of(plan)); },
       .tell = [](const std::string& line) { say("{}\n", line); }};
 }

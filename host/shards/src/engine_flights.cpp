@@ -16,9 +16,9 @@
 #include <tether/shards/engine_flights.h>
 #include <tether/shards/hand_in.h>
 
-// A call of the engine: a list of the trials that have no result, a script that flies one shard of
-// it, and the engine's command, which ends when all shards have ended. Meanwhile results appear in
-// the campaign's folder. Whatever is missing then is the list of the next call.
+// A call of the engine: lists of the trials that have no result, one for each shard, a script that
+// flies one of them, and the engine's command, which ends when all shards have ended. Meanwhile
+// results appear in the campaign's folder. Whatever is missing then is for the next call.
 namespace tether::shards {
 namespace {
 
@@ -145,7 +145,7 @@ class Flights {
                           .script = folder / "shard.sh",
                           .shards = std::min(setup_.shards, missing_.size()),
                           .cores = cores_};
-    write_list(call);
+    write_parts(call);
     os::write_file_atomically(folder / "input", filled(setup_.engine.input, setup_.engine, call));
     os::ChildProcess engine({.arguments = filled(setup_.engine.command, setup_.engine, call),
                              .environment = {},
@@ -163,27 +163,29 @@ class Flights {
     look();
   }
 
-  void write_list(const EngineCall& call) {
+  void write_parts(const EngineCall& call) {
     std::error_code failed;
     fs::create_directories(call.folder, failed);
     if (failed)
       throw Error(ErrorCode::kSetup, {call.folder.string()},
                   "cannot be made: " + failed.message() + ".")
           .about(setup_.campaign.string());
-    TrialList list{.files = digests_of(setup_.files)};
-    for (const TrialPlan* plan : missing_) {
-      list.measures = list.measures || !campaign::repeats(*plan->condition);
-      list.trials.push_back(
-          {plan->folder.lexically_relative(setup_.campaign), setup_.request(*plan)});
+    std::vector<TrialList> parts(call.shards, {.files = digests_of(setup_.files)});
+    for (std::size_t i = 0; i < missing_.size(); ++i) {
+      TrialList& part = parts[i % call.shards];
+      part.measures = part.measures || !campaign::repeats(*missing_[i]->condition);
+      part.trials.push_back(
+          {missing_[i]->folder.lexically_relative(setup_.campaign), setup_.request(*missing_[i])});
     }
-    const fs::path file = call.folder / "trials.json";
-    os::write_file_atomically(file, to_json(list));
+    for (std::size_t i = 0; i < parts.size(); ++i)
+      os::write_file_atomically(call.folder / fmt::format("part-{}.json", i + 1),
+                                to_json(parts[i]));
     os::write_file_atomically(
         call.script,
-        fmt::format("#!/bin/sh\n# Flies part $1 of {}.\ncd {} || exit 3\n"
-                    "exec {} > {}/shard-$1.log 2>&1\n",
+        fmt::format("#!/bin/sh\n# Flies part $1 of {}.\ncd {} || exit 3\nfolder={}\n"
+                    "exec {} \"$folder/part-$1.json\" > \"$folder/shard-$1.log\" 2>&1\n",
                     call.shards, os::shell_word(fs::current_path().string()),
-                    setup_.shard_command(file, call.shards), os::shell_word(call.folder.string())));
+                    os::shell_word(call.folder.string()), setup_.shard_command));
     fs::permissions(call.script, fs::perms(0755));
   }
 
@@ -191,7 +193,7 @@ class Flights {
   void look() {
     Plans still;
     for (const TrialPlan* plan : missing_) {
-      if (!campaign::has_result(plan->folder)) {
+      if (stop_.stop_requested() || !campaign::has_result(plan->folder)) {
         still.push_back(plan);
         continue;
       }

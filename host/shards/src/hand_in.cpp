@@ -3,6 +3,7 @@
 #include <system_error>
 
 #include <fcntl.h>
+#include <sys/sendfile.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -29,9 +30,18 @@ void require(const fs::path& path, const char* what, const std::error_code& fail
   if (failed) fail(path, what, failed.value());
 }
 
-void flush(const fs::path& file) {
-  const os::FileDescriptor own(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
-  if (!own || ::fsync(own.get()) != 0) fail(file, "cannot be flushed", errno);
+/// Not by std::filesystem, which does not say that the disk is full.
+void copy_content(const fs::path& from, const fs::path& to) {
+  constexpr std::size_t kAtOnce = 1 << 30;
+  const os::FileDescriptor source(::open(from.c_str(), O_RDONLY | O_CLOEXEC));
+  if (!source) fail(from, "cannot be read", errno);
+  const os::FileDescriptor own(::open(to.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+  if (!own) fail(to, "cannot be made", errno);
+  for (ssize_t copied = 1; copied != 0;) {
+    copied = ::sendfile(own.get(), source.get(), nullptr, kAtOnce);
+    if (copied < 0) fail(to, "cannot be written", errno);
+  }
+  if (::fsync(own.get()) != 0) fail(to, "cannot be flushed", errno);
 }
 
 /// Files and folders; a pipe or a socket of a trial is of no use elsewhere.
@@ -42,10 +52,7 @@ void copy_all(const fs::path& from, const fs::path& to) {
   for (const auto& entry : fs::directory_iterator(from)) {
     const fs::path target = to / entry.path().filename();
     if (entry.is_directory()) copy_all(entry.path(), target);
-    if (!entry.is_regular_file()) continue;
-    fs::copy_file(entry.path(), target, failed);
-    require(target, "cannot be written", failed);
-    flush(target);
+    if (entry.is_regular_file()) copy_content(entry.path(), target);
   }
 }
 

@@ -115,6 +115,7 @@ TEST_F(Shards, AreRefusedWhereOptionsContradict) {
            {file, "--shard", "1/2", "--engine", "slurm"},
            {file, "--collect", "a"},
            {"--listed", "x"},
+           {"--listed", "x", "--shard", "1/2"},
            {"--collect", "a", "--shard", "1/2"},
            {file, "--engine-option", "options=x"},
            {file, "--engine", "parallel", "--engine-option", "x=1"},

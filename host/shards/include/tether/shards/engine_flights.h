@@ -19,8 +19,7 @@ struct EngineSetup {
   std::size_t shards = 1;                    ///< at most
   std::filesystem::path campaign;            ///< its folder
   std::vector<std::filesystem::path> files;  ///< on which results depend
-  /// The words of a shell that fly part `$1` of `shards` of a list of trials.
-  std::function<std::string(const std::filesystem::path& list, std::size_t shards)> shard_command;
+  std::string shard_command;  ///< of a shell: flies the list of trials that is its next word
   std::function<std::string(const campaign::TrialPlan&)> request;  ///< of a plan, as text
   std::function<void(const std::string&)> tell;                    ///< one line
   /// How often to look for results.
