@@ -1,4 +1,5 @@
 #include "commands/commands.h"
+#include "options/output_file.h"
 #include "reading/file_kind.h"
 #include "terminal/print.h"
 #include "terminal/print_report.h"
@@ -116,9 +117,15 @@ std::string rendered(const ReportOptions& options) {
   return is_markdown ? text : wrapped(text, os::text_columns(STDOUT_FILENO));
 }
 
+OutputFormat output_format(const std::string& format) {
+  if (format == kHtml) return OutputFormat::kHtml;
+  return format.ends_with("csv") ? OutputFormat::kCsv : OutputFormat::kText;
+}
+
 }  // namespace
 
 int report(const ReportOptions& options, const std::stop_token&) {
+  require_output_file("--out", options.out, output_format(options.format));
   const std::string text = rendered(options);
   std::filesystem::path out = options.out;
   if (out.empty() && options.format == kHtml) out = options.folder / campaign::kReportFile;

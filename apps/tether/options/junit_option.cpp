@@ -1,5 +1,6 @@
 #include "options/junit_option.h"
 
+#include "options/output_file.h"
 #include "terminal/say.h"
 
 #include <system_error>
@@ -13,6 +14,7 @@ namespace tether::app {
 int with_junit(const std::filesystem::path& file, const std::string& suite,
                const std::function<int()>& action) {
   if (file.empty()) return action();
+  require_output_file("--junit", file, OutputFormat::kJunit);
   std::error_code ignored;  // writing reports it
   if (file.has_parent_path() && std::filesystem::create_directories(file.parent_path(), ignored))
     say("tether: --junit creates the folder {}\n", file.parent_path().string());

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,6 +11,7 @@
 #include <tether/base/error.h>
 #include <tether/campaign/campaign_folder.h>
 #include <tether/campaign/result.h>
+#include <tether/os/text_file.h>
 #include <tether/runner/trial_folder.h>
 #include <tether/toml/table.h>
 
@@ -87,8 +87,7 @@ std::optional<FileKind> kind_of(const fs::path& path) {
     return std::nullopt;
   }
   if (!fs::is_regular_file(path, ignored)) return std::nullopt;
-  std::string begin(kMcap.size(), '\0');
-  std::ifstream(path, std::ios::binary).read(begin.data(), std::ssize(begin));
+  const std::string begin = os::begin_of(path, kMcap.size());
   if (begin == kMcap) return FileKind::kRecord;
   if (begin.starts_with('<')) return FileKind::kWorld;
   return kind_of_toml(path);

@@ -1,5 +1,6 @@
 #include "commands/commands.h"
 #include "options/junit_option.h"
+#include "options/output_file.h"
 #include "reading/file_kind.h"
 #include "terminal/print.h"
 
@@ -98,6 +99,9 @@ void require_fit(const TimingOptions& options) {
            "needs --against OLD and --limit PERCENT: without a limit, no case can fail.");
   if (!options.counted.empty() && options.out.empty())
     refuse("--counted", "needs --out FILE, into which the counted work is written.");
+  require_output_file("--out", options.out, OutputFormat::kTiming);
+  require_output_file("--csv", options.csv, OutputFormat::kCsv);
+  require_output_file("--html", options.html, OutputFormat::kHtml);
   if (options.against.empty()) return;
   for (const auto& [option, file] :
        {std::pair("--out", options.out), std::pair("--csv", options.csv),

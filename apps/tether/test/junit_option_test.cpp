@@ -32,6 +32,15 @@ TEST(JunitOption, TheFileHasTheReasonOfAnError) {
   EXPECT_THAT(os::read_file(file), HasSubstr("a bad key"));
 }
 
+TEST(JunitOption, AFileThatIsNoJunitFileIsRefusedAndKept) {
+  const ScratchFolder scratch;
+  const auto file = scratch.write("q.toml", "world = \"room\"\n");
+  const Error error =
+      thrown_error(ErrorCode::kUsage, [&] { with_junit(file, "s", [] { return 0; }); });
+  EXPECT_EQ(error.subject(), "--junit");
+  EXPECT_EQ(os::read_file(file), "world = \"room\"\n");
+}
+
 TEST(JunitOption, NoFileIsNeeded) {
   EXPECT_EQ(with_junit("", "s", [] { return 7; }), 7);
 }

@@ -155,6 +155,16 @@ std::string read_file(const std::filesystem::path& file, std::uintmax_t limit) {
   return std::move(text).str();
 }
 
+std::string begin_of(const std::filesystem::path& file, std::size_t most_bytes) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored)) return "";
+  std::string begin(most_bytes, '\0');
+  std::ifstream stream(file, std::ios::binary);
+  stream.read(begin.data(), std::ssize(begin));
+  begin.resize(static_cast<std::size_t>(stream.gcount()));
+  return begin;
+}
+
 std::string read_whole(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};

@@ -23,6 +23,15 @@ TEST(LastLine, IsTheLastThatIsNotBlank) {
   EXPECT_EQ(last_line(" \n"), "");
 }
 
+TEST(BeginOf, HasAtMostTheBytesOfAFileAndNothingOfOthers) {
+  const ScratchFolder scratch;
+  const auto file = scratch.write("a", "text");
+  EXPECT_EQ(begin_of(file, 2), "te");
+  EXPECT_EQ(begin_of(file, 9), "text");
+  for (const fs::path& other : {scratch.path(), scratch.path("none"), fs::path("/dev/zero")})
+    EXPECT_EQ(begin_of(other, 2), "") << other;
+}
+
 TEST(WriteFileAtomically, ReplacesTheWholeFileAndLeavesNothingElse) {
   const ScratchFolder scratch;
   const auto file = scratch.write("a.json", "a longer first text");

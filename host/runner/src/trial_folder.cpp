@@ -21,7 +21,8 @@
 #include <tether/runner/trial_folder.h>
 
 // An earlier run is recognised by its files, and replaced as a whole or not at all. Its files are
-// those that Tether writes (by name), and those that its SUTs wrote (listed in its result).
+// those that Tether writes (by name; of JUnit files, by content), and those that its SUTs wrote
+// (listed in its result).
 namespace tether::runner {
 
 namespace {
@@ -42,7 +43,6 @@ constexpr OwnFile kOwnFiles[] = {
     {"sut-*.log", true},
     {"exec-*.log", true},
     {campaign::kReportFile},
-    {"junit.xml"},
     {"plots/*.svg"},
     {"frames/*.svg"},
     {campaign::kTrialLog},
@@ -61,6 +61,11 @@ bool is_own(std::string path) {
 [[noreturn]] void fail(const fs::path& path, const std::string& why) {
   throw Error(ErrorCode::kSetup, {path.string()}, why + ". Choose another folder with --out.")
       .about(path.string());
+}
+
+/// The user may have named it anything.
+bool is_junit(const fs::path& file) {
+  return os::begin_of(file, campaign::kJunitBegin.size()) == campaign::kJunitBegin;
 }
 
 bool is_folder(const fs::path& path) {
@@ -121,7 +126,8 @@ void remove_earlier_run(const fs::path& folder, const campaign::TrialResult* run
   for (const fs::path& file : all) {
     const std::string path = file.lexically_relative(folder).string();
     const bool is_of_sut = run && std::ranges::count(run->this_run.sut_files, path) > 0;
-    if (!is_folder(file) && !is_own(path) && !is_of_sut) of_others.push_back(path);
+    if (!is_folder(file) && !is_own(path) && !is_of_sut && !is_junit(file))
+      of_others.push_back(path);
   }
   std::ranges::sort(of_others);
   if (!of_others.empty())

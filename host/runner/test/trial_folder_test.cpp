@@ -80,6 +80,16 @@ TEST_F(TrialFolderTest, ReplacesAnEarlierRunAsAWholeOrRefusesIt) {
   EXPECT_THAT(content(), ElementsAre());
 }
 
+TEST_F(TrialFolderTest, ReplacesJunitFilesOfAnyNameButNoOtherXml) {
+  fly();
+  scratch_.write("ci/j.xml", std::string(campaign::kJunitBegin) + "</testsuites>\n");
+  scratch_.write("junit.xml", "<notes/>");
+  expect_refused(EarlierRun::kReplace, "has 'junit.xml', which");
+  fs::remove(scratch_.path("junit.xml"));
+  { const TrialFolder folder(scratch_.path(), EarlierRun::kReplace); }
+  EXPECT_THAT(content(), ElementsAre());
+}
+
 // Killed before it had a result, or damaged.
 TEST_F(TrialFolderTest, RecognizesARunByAnyOfItsFiles) {
   for (const char* file :

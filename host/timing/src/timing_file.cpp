@@ -1,5 +1,4 @@
 #include <charconv>
-#include <fstream>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -171,10 +170,7 @@ void append_line(std::string& out, std::initializer_list<std::string> words) {
 }  // namespace
 
 bool is_timing_file(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::string begin(kMagic.size(), '\0');
-  in.read(begin.data(), static_cast<std::streamsize>(begin.size()));
-  return in && begin == kMagic;
+  return os::begin_of(file, kMagic.size()) == kMagic;
 }
 
 Timing read_timing(const std::filesystem::path& file) {

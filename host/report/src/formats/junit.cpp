@@ -11,6 +11,7 @@
 #include <fmt/ranges.h>
 
 #include <tether/campaign/campaign_plan.h>
+#include <tether/campaign/result.h>
 #include <tether/os/clock.h>
 #include <tether/report/junit.h>
 #include <tether/report/timing_page.h>
@@ -149,7 +150,7 @@ std::string text_of(const Suite& suite, std::size_t id) {
 }
 
 std::string text_of(const std::vector<Suite>& suites) {
-  std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n";
+  std::string text(campaign::kJunitBegin);
   for (std::size_t i = 0; i < suites.size(); ++i) text += text_of(suites[i], i);
   return text + "</testsuites>\n";
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -28,6 +29,8 @@ std::string why_no_file(const std::filesystem::path& path);
 /// @throws Error(kBadFile) if it is missing, unreadable or longer than `limit` bytes.
 std::string read_file(const std::filesystem::path& file, std::uintmax_t limit = UINTMAX_MAX);
 
+/// The first bytes of a regular file, at most so many; empty if it cannot be read.
+std::string begin_of(const std::filesystem::path& file, std::size_t most_bytes);
 /// The content of a file of any kind; empty if it is missing.
 std::string read_whole(const std::filesystem::path& file);
 /// The last line that is not blank, without blanks at its ends; empty if there is none.

@@ -25,6 +25,9 @@ inline constexpr int kResultSchemaVersion = 1;
 inline constexpr std::string_view kResultFile = "result.json";
 /// The report of a run or campaign in its folder, unless the user names another file.
 inline constexpr std::string_view kReportFile = "report.html";
+/// How each JUnit file begins that Tether writes; the user names it.
+inline constexpr std::string_view kJunitBegin =
+    "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n";
 
 enum class Outcome {
   kGoalReached,  ///< exit 0: every SUT finished with its goal reached, every metric within its
