@@ -10,6 +10,7 @@
 #include <cmath>
 #include <filesystem>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include <fmt/format.h>
@@ -18,6 +19,7 @@
 #include <tether/os/program.h>
 #include <tether/report/junit.h>
 #include <tether/report/size_report.h>
+#include <tether/runner/target_choice.h>
 #include <tether/scenario/shipped_files.h>
 #include <tether/scenario/slowness.h>
 
@@ -65,6 +67,13 @@ sizing::Question question_of(const SizeOptions& options) {
 
 report::Board board_of(const scenario::ShippedFiles& shipped, const std::filesystem::path& given,
                        const scenario::Scenario& scenario, const scenario::Condition& condition) {
+  if (std::holds_alternative<scenario::SshAddress>(runner::parse_target_choice(given.string())))
+    refuse_option(
+        "--target",
+        fmt::format("{} is a real board, which cannot be slowed down. Calibrate a virtual "
+                    "target against it (tether-sut calibrate --write-target FILE), and "
+                    "give that file.",
+                    given.string()));
   const std::filesystem::path file = shipped.find(scenario::ShippedKind::kTarget, given);
   require_kind(file, FileKind::kTarget);
   const auto [factor, bounds] =

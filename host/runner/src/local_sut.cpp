@@ -28,6 +28,16 @@ std::filesystem::path find_launched(const std::string& program, const scenario::
       .about(program);
 }
 
+/// The launcher of a target. @throws Error(kBadFile) at the target's file.
+std::filesystem::path find_launcher(const std::string& program,
+                                    const scenario::Target& target) try {
+  return target.emulator ? os::find_emulator(*target.emulator) : os::find_program(program);
+} catch (const Error& e) {
+  const std::string key = target.emulator ? "emulator" : "launcher";
+  throw Error(ErrorCode::kBadFile, target.where(key), fmt::format("'{}': {}", key, e.what()))
+      .about(key);
+}
+
 /// Creates the folder; returns its absolute path.
 std::string files_folder(const std::filesystem::path& folder) {
   std::error_code error;
@@ -116,11 +126,10 @@ LocalSutCommand local_sut_command(const scenario::Sut& sut,
     program = file.string();
     if (target && target->emulator) {
       os::require_emulated(*target->emulator, file);
-      words.front() = os::find_emulator(*target->emulator).string();
+      words.front() = find_launcher(words.front(), *target).string();
     }
-    command.programs.push_back(os::find_program(words.front()));
-    if (supervisor > 0 && is_launched)
-      command.programs.push_back(os::find_program(words[supervisor]));
+    if (supervisor > 0) command.programs.push_back(os::find_program(words.front()));
+    if (is_launched) command.programs.push_back(find_launcher(words[supervisor], *target));
   }
   command.programs.push_back(file);
   command.words = std::move(words);
@@ -152,6 +161,7 @@ std::vector<std::filesystem::path> sut_programs(const scenario::Scenario& scenar
         if (std::find(programs.begin(), programs.end(), program) == programs.end())
           programs.push_back(program);
     } catch (const Error& e) {
+      if (e.code() == ErrorCode::kBadFile) throw;  // at the target's file
       throw Error(ErrorCode::kBadFile, scenario.where("command"),
                   fmt::format("the SUT of UAV \"{}\": {}", uav.placement.name, e.what()))
           .about(uav.placement.name);

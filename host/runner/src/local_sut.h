@@ -21,7 +21,8 @@ struct LocalSutCommand {
 
 /// The command that starts a SUT on this machine. The program of a target with a launcher need not
 /// be one of this machine.
-/// @throws Error(kSetup) if a program does not exist.
+/// @throws Error(kSetup) if a program does not exist; Error(kBadFile) at the target's file, about
+/// the key, if that is its launcher.
 LocalSutCommand local_sut_command(const scenario::Sut& sut,
                                   const std::optional<scenario::Target>& target,
                                   const std::string& group = "");
@@ -33,8 +34,8 @@ std::vector<int> cpus_for(const std::vector<int>& allowed, int cores, std::size_
 /// All programs that start the SUTs of a condition here, each once; last the plugin that counts.
 /// Those of SUTs that the user starts are among them only if they are counted. `by_user`: the user
 /// starts all SUTs.
-/// @throws Error(kBadFile) at the scenario's file, about the UAV whose program does not exist;
-/// Error(kSetup) without the plugin.
+/// @throws Error(kBadFile) at the scenario's file, about the UAV whose program does not exist, or
+/// as local_sut_command; Error(kSetup) without the plugin.
 std::vector<std::filesystem::path> sut_programs(const scenario::Scenario& scenario,
                                                 const scenario::Condition& condition,
                                                 bool by_user = false);

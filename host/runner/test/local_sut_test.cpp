@@ -126,7 +126,21 @@ TEST(LocalSut, NamesAProgramThatDoesNotExist) {
   expect_missing("/nowhere/bin/fly", "fly", {"/bin/sh"}, "/nowhere/bin");
   expect_missing("/nowhere/bin/fly", "fly", {}, "/nowhere/bin");
   expect_missing("/bin/fly", "fly", {"no-such-launcher"}, "/bin");
-  expect_missing("no-such-launcher", "sh", {"no-such-launcher"}, "");
+}
+
+TEST(LocalSut, NamesTheLineOfALauncherThatDoesNotExist) {
+  const ScratchFolder scratch;
+  scenario::Scenario scenario;
+  scenario.uavs.resize(1);
+  scenario.uavs[0].sut.command = {"sh"};
+  scenario::Condition condition;
+  condition.computers[0].target = target({"no-such-launcher"}, "");
+  condition.computers[0].target->file =
+      scratch.write("t.toml", "name = \"t\"\nlauncher = [\"no-such-launcher\"]\n");
+  const Error error = bad_file_error([&] { sut_programs(scenario, condition); });
+  EXPECT_EQ(error.where(), (FileLocation{scratch.path("t.toml"), 2}));
+  EXPECT_EQ(error.subject(), "launcher");
+  EXPECT_THAT(error.what(), testing::HasSubstr("no-such-launcher"));
 }
 
 // The error has the scenario's file, and that of `cores` the target's.
