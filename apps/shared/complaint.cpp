@@ -1,5 +1,7 @@
 #include "shared/complaint.h"
 
+#include "shared/value.h"
+
 #include <string_view>
 #include <vector>
 
@@ -38,6 +40,20 @@ std::string commands_with(const CLI::App& program, const std::string& option) {
   return words;
 }
 
+/// Of an option whose text cannot be made a number; empty: it is another error.
+std::string no_number(const CLI::App& command, const CLI::ParseError& error) {
+  const std::string_view words = error.what();
+  for (const CLI::Option* option : command.get_options()) {
+    const std::string begin = "Could not convert: " + option->get_name() + " = ";
+    if (!words.starts_with(begin)) continue;
+    const Value value = value_of(*option);
+    return option->get_name() + ": must be a " + (value.is_whole ? "whole number" : "number") +
+           (value.range.empty() ? "" : " from " + value.range) + ", but is '" +
+           std::string(words.substr(begin.size())) + "'.";
+  }
+  return "";
+}
+
 /// First a word that is neither a command, an option nor an argument, with the nearest one that is.
 std::string what_is_wrong(const CLI::App& command, const CLI::ParseError& error,
                           const std::function<std::string(const std::string&)>& advice) {
@@ -56,7 +72,10 @@ std::string what_is_wrong(const CLI::App& command, const CLI::ParseError& error,
   }
   if (rest.empty() && error.get_name() == "RequiredError" && !subcommands.empty())
     return "no command is given.";
-  if (rest.empty()) return std::string(error.what()) + ".";
+  if (rest.empty()) {
+    const std::string number = no_number(command, error);
+    return number.empty() ? std::string(error.what()) + "." : number;
+  }
   const std::string given = rest.front().substr(0, rest.front().find('='));
   for (const std::string& option : known)
     if (given.size() > 3 && option.ends_with("-" + given.substr(2)))

@@ -32,12 +32,16 @@ TEST(CommandLine, NamesWhatIsWrongInOneLineWithTheHelpOfItsCommand) {
       {{"tether"}, {"command", "tether --help"}},
       {{"tether", "whatever"}, {"command 'whatever'", "tether --help"}},
       {{"tether", "face_anchor"}, {"type: tether run face_anchor", "tether --help"}},
-      {{"tether", "campaign", "x", "--trials", "9"}, {"`trials`", "tether campaign --help"}},
+      {{"tether", "campaign", "x", "--flights", "9"}, {"`trials`", "tether campaign --help"}},
       {{"tether", "run"}, {"scenario", "tether run --help"}},
       {{"tether", "run", "x", "y"}, {"argument 'y'", "tether run --help"}},
       {{"tether", "world", "check"}, {"world", "tether world check --help"}},
       {{"tether", "run", "x", "--seed", "-1"}, {"--seed", "0 to 2^53, but is '-1'"}},
       {{"tether", "run", "x", "--seed", "many"}, {"--seed", "'many'"}},
+      {{"tether", "run", "x", "--seed", "1.5"},
+       {"--seed: must be a whole number from 0 to 2^53, but is '1.5'.", "tether run --help"}},
+      {{"tether", "size", "x", "--jobs", "1.5"},
+       {"--jobs: must be a whole number, but is '1.5'.", "tether size --help"}},
       {{"tether", "run", "x", "--slowdown", "nan"}, {"--slowdown", "0.001 to 10000"}},
       {{"tether", "size", "x", "--between", "5"}, {"--between", "tether size --help"}}};
   for (const auto& [words, parts] : cases) {

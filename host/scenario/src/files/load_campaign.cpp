@@ -138,7 +138,7 @@ Scenario load_point(const toml::Table& root, const std::filesystem::path& file,
                     const Settings& point) {
   if (point.empty()) return load_scenario(file);
   try {
-    return load_scenario(file, point);
+    return load_scenario(file, point, "");
   } catch (const Error& error) {
     root.fail("sweep", fmt::format("with {}: {}", text_of(point), error.what()));
   }

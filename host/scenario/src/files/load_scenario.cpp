@@ -372,17 +372,6 @@ const Condition* Scenario::find_condition(std::string_view condition) const {
 
 namespace {
 
-/// If the error is about a key that a setting replaced: the same error, which names the setting.
-Error with_setting(const Error& error, const std::vector<Setting>& settings) {
-  for (const auto& [key, value] : settings)
-    if (const std::string last = key.substr(key.rfind('.') + 1); last == error.subject())
-      return Error(error.code(), error.where(),
-                   fmt::format("{}; the value is that of {}={}, not the file's",
-                               error.what() + located(error.where(), "").size(), key, value))
-          .about(last);
-  return error;
-}
-
 Scenario read_scenario(const std::filesystem::path& file, const std::vector<Setting>& settings) {
   Scenario scenario;
   scenario.file = std::filesystem::absolute(file).lexically_normal();
@@ -413,14 +402,33 @@ Scenario read_scenario(const std::filesystem::path& file, const std::vector<Sett
   return scenario;
 }
 
+/// If the error is about a value of a setting: the same error, which names the setting in place of
+/// the file's line.
+Error with_setting(const Error& error, const std::filesystem::path& file,
+                   const std::vector<Setting>& settings, const std::string& from) {
+  const auto wrong = std::ranges::find(settings, error.subject(), [](const Setting& setting) {
+    return setting.key.substr(setting.key.rfind('.') + 1);
+  });
+  if (wrong == settings.end()) return error;
+  try {
+    read_scenario(file, {});
+  } catch (const Error& own) {
+    if (own.where() == error.where()) return error;  // another key of that name is wrong
+  }
+  return Error(error.code(), fmt::format("{}{}={}: {}", from, wrong->key, wrong->value,
+                                         error.what() + located(error.where(), "").size()))
+      .about(error.subject());
+}
+
 }  // namespace
 
-Scenario load_scenario(const std::filesystem::path& file, const std::vector<Setting>& settings) {
+Scenario load_scenario(const std::filesystem::path& file, const std::vector<Setting>& settings,
+                       const std::string& from) {
   try {
     return read_scenario(file, settings);
   } catch (const Error& error) {
     if (error.code() != ErrorCode::kBadFile) throw;
-    throw with_setting(error, settings);
+    throw with_setting(error, file, settings, from);
   }
 }
 

@@ -18,7 +18,7 @@ Setting parse_setting(std::string_view text, const std::filesystem::path& folder
   const std::size_t sign = text.find('=');
   if (sign == 0 || sign == std::string_view::npos || sign + 1 == text.size())
     throw Error(ErrorCode::kUsage,
-                fmt::format("'{}' must be KEY=VALUE, for instance time_limit_s=30", text))
+                fmt::format("--set {}: must be KEY=VALUE, for instance time_limit_s=30", text))
         .about(std::string(text));
   Setting setting{std::string(text.substr(0, sign)), std::string(text.substr(sign + 1))};
   std::error_code ignored;

@@ -170,9 +170,10 @@ std::string slug(std::string_view name);
 /// "NAME-cpu_factor-2".
 /// @throws Error(kBadFile) with file and line, about the key, for TOML errors, an unknown key, a
 ///   wrong type, a value out of its range, a missing file or key. Error(kUsage), about the key, if
-///   a setting has a key that the file does not have.
-Scenario load_scenario(const std::filesystem::path& file,
-                       const std::vector<Setting>& settings = {});
+///   a setting has a key that the file does not have. An error about the value of a setting has no
+///   place; its message begins with `from` and the setting.
+Scenario load_scenario(const std::filesystem::path& file, const std::vector<Setting>& settings = {},
+                       const std::string& from = "--set ");
 
 /// The world request of a trial: each UAV's start yaw is drawn from its spread, keyed by the seed.
 sim::WorldRequest world_request(const Scenario& scenario, std::uint64_t seed);
