@@ -55,5 +55,30 @@ TEST(FindProgram, RefusesWhatCannotBeExecuted) {
     EXPECT_EQ(advice(file).find("chmod"), std::string::npos);
 }
 
+TEST(FindProgram, AdvisesByWhatIsWrongWithThePath) {
+  const ScratchFolder scratch;
+  const std::string folder = scratch.path();
+  scratch.write("bad.cpp", "int main() {}\n");
+  scratch.write("fly", "no program");
+  for (const char* script : {"gone", "windows"}) make_program(scratch, script);
+  scratch.write("gone", "#! /no/such/python3 -u\n");
+  scratch.write("windows", "#!/bin/sh\r\necho\r\n");
+  const std::pair<const char*, std::string> cases[] = {
+      {"/bad.cpp", "it is source code. Build it, and name the program"},
+      {"/fly fast now", "Write each argument apart: \"" + folder + "/fly\", \"fast now\""},
+      {"/~/bin/fly", "'~' does not stand for your home folder here. Write the whole path"},
+      {"/gone", "names the interpreter \"/no/such/python3\", which does not exist. Install it"},
+      {"/windows", "Save the file with the line ends of Unix"},
+  };
+  for (const auto& [name, advice] : cases) {
+    const std::string file = folder + name;
+    const std::string message = thrown_error(ErrorCode::kSetup, [&] { find_program(file); }).what();
+    EXPECT_NE(message.find(advice), std::string::npos) << message;
+  }
+  make_program(scratch, "tab");
+  scratch.write("tab", "#!\t /bin/sh\t-e\n");
+  EXPECT_EQ(find_program(folder + "/tab"), folder + "/tab");
+}
+
 }  // namespace
 }  // namespace tether::os

@@ -19,6 +19,11 @@ void Document::Delete::operator()(Node* node) const {
 }
 
 Document Document::load(const std::filesystem::path& file) {
+  constexpr std::string_view kElf =
+      "\x7f"
+      "ELF";
+  if (os::begin_of(file, kElf.size()) == kElf)
+    throw Error(ErrorCode::kBadFile, {file.string()}, "is a program, not a TOML file");
   return parse(os::read_file(file, kLargestFile), file.string());
 }
 

@@ -30,6 +30,8 @@ TEST(Document, RefusesAFileThatCannotBeRead) {
   for (const auto& file : {folder.path("gone"), folder.path("pipe"), folder.path(), large})
     EXPECT_EQ(bad_file_error([&] { Document::load(file); }).where().file, file);
   EXPECT_THAT(bad_file_error([&] { Document::load(large); }).what(), testing::HasSubstr("1048577"));
+  EXPECT_THAT(bad_file_error([] { Document::load("/proc/self/exe"); }).what(),
+              testing::HasSubstr("is a program, not a TOML file"));
 }
 
 TEST(Document, ReplacesAValueWhereverThePathNamesOne) {

@@ -9,7 +9,8 @@ namespace tether::os {
 std::filesystem::path own_file();
 /// The file that a command starts: in the folder of this program, else in PATH. A name with '/' is
 /// a path.
-/// @throws Error(kSetup), about the name, if there is no such program.
+/// @throws Error(kSetup), about the name, if there is no such program; about the file, if it is a
+/// script without its interpreter.
 std::filesystem::path find_program(const std::string& name);
 
 }  // namespace tether::os
