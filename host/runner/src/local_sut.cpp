@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <tether/base/counted.h>
 #include <tether/base/error.h>
 #include <tether/base/suggest.h>
 #include <tether/os/captured_run.h>
@@ -104,10 +105,12 @@ void require_cores(const scenario::Scenario& scenario, const scenario::Condition
   if (first_cpu(condition, suts) <= allowed) return;
   for (std::size_t uav = 0; uav < suts; ++uav)
     if (const auto& target = computer_of(condition, uav).target; target && target->cores > 0)
-      throw Error(ErrorCode::kBadFile, target->where("cores"),
-                  fmt::format("'cores' is too large ({} for each of {} SUTs). This process may "
-                              "use {} of this machine's",
-                              target->cores, suts, allowed))
+      throw Error(
+          ErrorCode::kBadFile, target->where("cores"),
+          fmt::format("'cores' is {}{}, but this process may use only {} of this machine. "
+                      "Lower it, or use a machine with more cores",
+                      target->cores, suts == 1 ? "" : fmt::format(" for each of {} SUTs", suts),
+                      counted(allowed, "core")))
           .about("cores");
 }
 

@@ -101,6 +101,21 @@ scenario::Target board_at(const scenario::SshAddress& address) {
   return target;
 }
 
+/// On a machine of another speed. It is the same condition: its name stays.
+void scale_cpu_time(scenario::Condition& condition, double scale) {
+  bool is_used = false;
+  for (scenario::Computer& own : condition.computers) {
+    if (own.clock.kind != computer::ClockKind::kCpu) continue;
+    own.clock.factor *= scale;
+    is_used = true;
+  }
+  if (is_used) return;
+  throw Error(ErrorCode::kUsage,
+              fmt::format("--cpu-time-scale {}: condition \"{}\" does not have clock = \"cpu\".",
+                          scale, condition.name))
+      .about("--cpu-time-scale");
+}
+
 scenario::Condition make_condition(const scenario::Scenario& scenario,
                                    const TrialRequest& request) {
   scenario::Condition condition = scenario::pick_condition(scenario, request.condition);
@@ -112,10 +127,7 @@ scenario::Condition make_condition(const scenario::Scenario& scenario,
     move_to(condition, board_at(*address), keep_name);
   if (!request.simulator.empty()) condition.simulator = request.simulator;
   if (request.slowdown) scenario::slow_down(condition, *request.slowdown);
-  // On a machine of another speed. It is the same condition: its name stays.
-  for (scenario::Computer& own : condition.computers)
-    if (request.cpu_time_scale && own.clock.kind == computer::ClockKind::kCpu)
-      own.clock.factor *= *request.cpu_time_scale;
+  if (request.cpu_time_scale) scale_cpu_time(condition, *request.cpu_time_scale);
   if (!request.unknown_stages.empty())
     scenario::set_unknown_stages(condition, request.unknown_stages);
   return condition;

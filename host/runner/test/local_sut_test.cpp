@@ -158,6 +158,7 @@ TEST(LocalSut, ChecksTheProgramsAndCoresOfAScenario) {
   Error error = bad_file_error([&] { require_sut_programs(scenario, condition); });
   EXPECT_EQ(error.where().file, "/targets/t.toml");
   EXPECT_EQ(error.subject(), "cores");
+  EXPECT_THAT(error.what(), testing::HasSubstr("'cores' is 1048576 for each of 2 SUTs, but"));
 
   scenario.uavs[1].placement.name = "uav2";
   scenario.uavs[1].sut.command = {"no-such-program-of-tether"};

@@ -123,6 +123,14 @@ TEST(TrialRequest, LaysTargetSlowdownAndScaleOverTheCondition) {
   EXPECT_TRUE(make_trial(request).waits_for_sut);
 }
 
+TEST(TrialRequest, RefusesAScaleOfCpuTimeUnderOtherClocks) {
+  TrialRequest request{.scenario = kShipped / "scenarios/face_anchor.toml",
+                       .target = scenario::SshAddress{"pi@board"},
+                       .cpu_time_scale = 2.0};
+  EXPECT_EQ(thrown_error(ErrorCode::kUsage, [&] { make_trial(request); }).subject(),
+            "--cpu-time-scale");
+}
+
 TEST(TrialRequest, WithoutAFolderReplacesTheRunOfItsName) {
   TrialRequest request{.scenario = kShipped / "scenarios/face_anchor.toml", .seed = 3};
   const TrialSpec spec = make_trial(request);
