@@ -107,8 +107,14 @@ class Parser {
       if (unit.name == name) condition.unit = &unit;
     }
     if (condition.unit != nullptr) return ok_status();
-    return wrong((name.empty() ? "lacks a unit" : "has the unit " + quoted(name)) + "; of " +
-                 quoted(condition.quantity->name) + ", " + allowed_hint(name, names));
+    if (!name.empty() && name != "in")
+      return wrong("has the unit " + quoted(name) + "; of " + quoted(condition.quantity->name) +
+                   ", " + allowed_hint(name, names));
+    std::string forms;
+    for (const std::string_view unit : names)
+      forms += (forms.empty() ? " " : " or ") + toml::number_text(condition.bound) + " " +
+               std::string(unit);
+    return wrong("lacks a unit. Write" + forms);
   }
 
   Status share(Condition& condition) {

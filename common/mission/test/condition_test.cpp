@@ -29,21 +29,23 @@ TEST(Condition, RefusalNamesWhatIsWrong) {
     const char* text;
     const char* named;
   };
-  for (const Case& c : std::vector<Case>{{"", "no quantity \"\""},
-                                         {"height <= 1 m", "\"height\""},
-                                         {"clearence <= 1 m", "did you mean 'clearance'"},
-                                         {"altitude of blue_box <= 1 m", "of blue_box"},
-                                         {"distance of", "after 'of'"},
-                                         {"altitude < 1 m", "\"<\""},
-                                         {"altitude <= high m", "\"high\""},
-                                         {"altitude <= nan m", "\"nan\""},
-                                         {"altitude <= 1m", "\"1m\""},
-                                         {"altitude <= 1", "'m'"},
-                                         {"altitude <= 1 deg", "\"deg\""},
-                                         {"altitude <= 1 m in 0 %", "share"},
-                                         {"altitude <= 1 m in 101 %", "share"},
-                                         {"altitude <= 1 m in 95", "share"},
-                                         {"altitude <= 1 m always", "\"always\""}}) {
+  for (const Case& c :
+       std::vector<Case>{{"", "no quantity \"\""},
+                         {"height <= 1 m", "\"height\""},
+                         {"clearence <= 1 m", "did you mean 'clearance'"},
+                         {"altitude of blue_box <= 1 m", "of blue_box"},
+                         {"distance of", "after 'of'"},
+                         {"altitude < 1 m", "\"<\""},
+                         {"altitude <= high m", "\"high\""},
+                         {"altitude <= nan m", "\"nan\""},
+                         {"altitude <= 1m", "\"1m\""},
+                         {"altitude <= 1", "lacks a unit. Write 1 m or 1 cm"},
+                         {"reaction_time <= 200 in 95 %", "lacks a unit. Write 200 s or 200 ms"},
+                         {"altitude <= 1 deg", "\"deg\""},
+                         {"altitude <= 1 m in 0 %", "share"},
+                         {"altitude <= 1 m in 101 %", "share"},
+                         {"altitude <= 1 m in 95", "share"},
+                         {"altitude <= 1 m always", "\"always\""}}) {
     const auto condition = parse_condition(c.text);
     ASSERT_FALSE(condition) << c.text;
     EXPECT_THAT(condition.failure().message, HasSubstr(c.named)) << c.text;

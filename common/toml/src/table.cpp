@@ -37,6 +37,20 @@ std::string describe(const ::toml::node& node) {
   }
 }
 
+/// "; line 7 has it in [uav.camera]. Write it above …", if a table below this one has the key.
+std::string place_below(const ::toml::table& table, const std::string& path, std::string_view key) {
+  for (const auto& [name, node] : table) {
+    const ::toml::table* child = node.as_table();
+    if (child == nullptr) continue;
+    const std::string header = (path.empty() ? "" : path + ".") + string_of(name.str());
+    if (const auto found = child->find(key); found != child->end())
+      return "; line " + std::to_string(line_of(found->first.source())) + " has it in [" + header +
+             "]. Write it above [" + header + "]";
+    if (const std::string below = place_below(*child, header, key); !below.empty()) return below;
+  }
+  return "";
+}
+
 constexpr std::string_view kArrayOfStrings = "an array of strings";
 
 bool is_identifier(std::string_view text) {
@@ -139,7 +153,7 @@ const Node& Table::required(std::string_view key) const {
     const bool is_empty = path_.empty() && as_table(*table_).empty();
     throw Error(ErrorCode::kBadFile, where(),
                 (is_empty ? "the file is empty; it needs" : title() + " lacks") + " the key '" +
-                    string_of(key) + "'")
+                    string_of(key) + "'" + place_below(as_table(*table_), path_, key))
         .about(string_of(key));
   }
   return opaque(*node);

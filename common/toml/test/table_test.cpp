@@ -56,6 +56,16 @@ TEST(Table, RefusesUnknownAndMissingKeys) {
       "", [](const Table& t) { (void)t.text("k"); }, 0, "k");
 }
 
+TEST(Table, NamesTheTableBelowThatHasAMissingKey) {
+  const auto key_of_uav = [](const Table& t) { (void)t.tables("uav").front().text("key"); };
+  EXPECT_STREQ(
+      error_of("[[uav]]\n[uav.sensors.camera]\nkey = 1\n", key_of_uav).what(),
+      "f.toml:1: [uav] lacks the key 'key'; line 3 has it in [uav.sensors.camera]. Write it "
+      "above [uav.sensors.camera]");
+  EXPECT_STREQ(error_of("[[uav]]\n[uav.sensors]\n[[uav]]\nkey = 1\n", key_of_uav).what(),
+               "f.toml:1: [uav] lacks the key 'key'");
+}
+
 // Values ------------------------------------------------------------------------------------------
 
 TEST(Table, ReadsValues) {

@@ -84,6 +84,8 @@ uav::Delay read_empirical(const toml::Table& delay, std::vector<std::filesystem:
 // The kind decides which keys are allowed, so it is read first, with any key allowed.
 uav::Delay read_delay(const toml::Table& sensor, std::vector<std::filesystem::path>& files) {
   constexpr std::array<std::string_view, 3> kKinds = {"constant", "normal", "empirical"};
+  if (!sensor.is_table("delay"))
+    sensor.fail("delay", "must be a table. Write delay = { kind = \"constant\", ms = 37 }");
   switch (sensor.table("delay").choice("kind", kKinds)) {
     case 0: {
       const toml::Table delay = sensor.table("delay", {"kind", "ms"});

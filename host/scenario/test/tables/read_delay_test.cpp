@@ -69,6 +69,12 @@ TEST_F(InlineSamples, AreReadInOrder) {
   EXPECT_TRUE(files_.empty());
 }
 
+TEST_F(InlineSamples, AreInATableWhoseFormIsShown) {
+  expect_refusal(2, "delay", [&] { (void)read("37"); });
+  EXPECT_THAT(bad_file_error([&] { (void)read("37"); }).what(),
+              testing::HasSubstr("Write delay = { kind = \"constant\", ms = 37 }"));
+}
+
 TEST_F(InlineSamples, AreRefusedAtTheirLine) {
   for (const std::string sample : {"-2", "\"2\"", "nan", "6.1e4"})
     EXPECT_EQ(bad_file_error([&] {
