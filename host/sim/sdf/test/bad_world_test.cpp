@@ -58,6 +58,8 @@ TEST(BadWorlds, FilesAreRefused) {
       {world_sdf("<model name='m'><link name='" + long_name +
                  "'>\n<gravity>perhaps</gravity></link></model>"),
        4, "", "'perhaps'"},
+      {world_sdf("<model name='m'>\n<static>Yes</static><link name='l'/></model>"), 4, "",
+       "'Yes' is not a value that SDF allows for it. Write true or false"},
       {world_sdf("<model name='a'><link name='l'/></model>\n"
                  "<model name='a'><link name='l'/></model>"),
        3, "", "name[a]"},
@@ -69,6 +71,8 @@ TEST(BadWorlds, FilesAreRefused) {
 
 TEST(BadWorlds, ValuesAreRefused) {
   expect_refused({
+      {visual("<box><size>1 1 1</size></box>", "<pose relative_to='nowhere'>0 0 0 0 0 0</pose>"), 5,
+       "visual 'v'", "relative to 'nowhere', which cannot be found"},
       {moving("<inertial>\n<mass>-2</mass></inertial>"), 4, "<mass> of link 'l'", "-2"},
       {moving("<inertial>\n<mass>nan</mass></inertial>"), 4, "<mass> of link 'l'", "finite"},
       {visual("<box><size>1 0 1</size></box>"), 6, "<size> of visual 'v'", "1 0 1"},

@@ -3,6 +3,8 @@
 #include "checks/sdf_check.h"
 #include "files/sdf_source.h"
 
+#include <string>
+
 #include <ignition/math/Color.hh>
 #include <ignition/math/Pose3.hh>
 
@@ -22,7 +24,14 @@ template <class SdfObject>
 uav::Pose resolved_pose(const SdfSource& source, const SdfObject& object) {
   ignition::math::Pose3d pose;
   const sdf::Errors errors = object.SemanticPose().Resolve(pose);
-  if (!errors.empty()) refuse(source, object.Element(), "has a pose that cannot be resolved");
+  if (!errors.empty()) {
+    const std::string& frame = object.PoseRelativeTo();
+    refuse(source, object.Element(),
+           frame.empty() ? "has a pose that cannot be resolved"
+                         : "has a pose relative to '" + frame +
+                               "', which cannot be found. Name a link, joint, model or frame of "
+                               "the same model");
+  }
   return to_pose(pose);
 }
 

@@ -152,6 +152,20 @@ std::string similar(const fs::path& missing) {
                              std::vector<std::string_view>(names.begin(), names.end())));
 }
 
+/// The path to the name that is most like the first part of `path` that is missing in the folder.
+/// Empty: nothing is missing, or no name is like it.
+std::string nearest_in(const fs::path& folder, const fs::path& path) {
+  fs::path there;
+  for (const fs::path& part : path) {
+    if (!is_there(folder / there / part)) {
+      const std::string meant = similar(folder / there / part);
+      return meant.empty() ? "" : (there / meant).string();
+    }
+    there /= part;
+  }
+  return "";
+}
+
 }  // namespace
 
 ModelPath::ModelPath(const fs::path& world, std::vector<fs::path> model_folders)
@@ -205,9 +219,9 @@ std::string ModelPath::advice_on_missing(const std::string& uri, const fs::path&
     return (name.empty() ? "Correct the path" : "Did you mean '" + name + "'? Correct the path") +
            ", or use --missing-models placeholder to fly without it";
   }
-  const std::string name = uri.substr(scheme + 3, uri.find('/', scheme + 3) - scheme - 3);
+  const fs::path path = uri.substr(scheme + 3);
   for (const fs::path& folder : folders_of_models(from))
-    if (const std::string meant = similar(folder / name); !meant.empty())
+    if (const std::string meant = nearest_in(folder, path); !meant.empty())
       return "Did you mean '" + uri.substr(0, scheme + 3) + meant + "', in " + folder.string() +
              "? Or use --missing-models placeholder to fly without it";
   return "Put it next to the world or into its models/, add its folder to GZ_SIM_RESOURCE_PATH, "

@@ -262,8 +262,12 @@ void SdfSource::refuse_by(const sdf::Errors& errors) const {
   if (std::regex_match(reason, match, unread) && first.LineNumber()) {
     const auto* root = stage_.root_of(at.file);
     const auto* xml = root != nullptr ? element_at(*root, match[1].str(), at.line) : nullptr;
-    if (xml != nullptr && xml->GetText() != nullptr)
-      reason += ": '" + one_line(xml->GetText()) + "' is not a value that SDF allows for it";
+    if (xml != nullptr && xml->GetText() != nullptr) {
+      const std::string text = one_line(xml->GetText());
+      reason += ": '" + text + "' is not a value that SDF allows for it";
+      static const std::regex yes_or_no("yes|no|on|off", std::regex::icase);
+      if (std::regex_match(text, yes_or_no)) reason += ". Write true or false";
+    }
   }
   throw Error(ErrorCode::kBadFile, at, reason);
 }

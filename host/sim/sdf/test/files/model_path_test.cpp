@@ -101,14 +101,18 @@ TEST_F(ModelPathTest, ResolvesPathsByTheFileThenByTheWorld) {
 TEST_F(ModelPathTest, SuggestsTheNameThatWasProbablyMeant) {
   folder_.write("outer/models/gate/model.config", "");
   folder_.write("outer/wall.sdf", "");
+  folder_.write("outer/textures/planks.png", "");
   const ModelPath path(folder_.path("outer/w.sdf"), {});
   const auto advice = [&](const std::string& uri) {
     return path.advice_on_missing(uri, folder_.path("outer/w.sdf"));
   };
   EXPECT_THAT(advice("model://gaet"), ::testing::HasSubstr("Did you mean 'model://gate'"));
   EXPECT_THAT(advice("model://gaet/meshes/a.dae"), ::testing::HasSubstr("'model://gate'"));
+  EXPECT_THAT(advice("model://textures/plank.png"),
+              ::testing::HasSubstr("Did you mean 'model://textures/planks.png'"));
   EXPECT_THAT(advice("wal.sdf"), ::testing::HasSubstr("Did you mean 'wall.sdf'"));
-  for (const char* uri : {"model://sunflower", "no/such.sdf", "model://"})
+  for (const char* uri :
+       {"model://sunflower", "model://textures/sunflower.png", "no/such.sdf", "model://"})
     EXPECT_THAT(advice(uri), ::testing::Not(::testing::HasSubstr("Did you mean"))) << uri;
 }
 
