@@ -101,9 +101,9 @@ void Coordinator::Impl::on_closed(link::PeerId peer, const Failure& failure) {
   if (!session || session->left) return;
   if (failure.kind == Failure::Kind::kDisconnected && awaits_only_confirmation(*session)) return;
   const std::string where =
-      running_ && is_synchronised() ? "; " + describe_state(party(*session, host_clock_())) : "";
+      running_ && is_synchronised() ? describe_state(party(*session, host_clock_())) + "; " : "";
   end({RunEnd::kSutLost,
-       fmt::format("lost the SUT of UAV \"{}\": {}{}", session->uav_name, failure.message, where)});
+       fmt::format("lost the SUT of UAV \"{}\": {}{}", session->uav_name, where, failure.message)});
 }
 
 void Coordinator::Impl::join(link::PeerId peer, const link::Hello& hello) {

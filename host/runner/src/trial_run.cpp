@@ -308,7 +308,7 @@ Conducted TrialRun::conduct() {
   if (spec_.has_sut_at(SutPlace::kUnknown) && observer_.on_listening)
     observer_.on_listening(sut_instructions(spec_.scenario, sut_run_, spec_.waits_for_sut));
   TrialEnd end = fly(machine);
-  end.report.reason += explanation(end);
+  end.report.reason = explained(end);
   end_suts(end);
   std::vector<campaign::Doubt> doubted = doubts(end.report);
   std::vector<campaign::MachineLoad> loads;
@@ -392,14 +392,14 @@ void TrialRun::watch(const coordinator::RunStatus& status, StallWatch& stalls) {
   if (!stall.empty() && !is_known && observer_.on_blocked) observer_.on_blocked(stall);
 }
 
-/// What else is known about the end, each part after "; ".
-std::string TrialRun::explanation(const TrialEnd& end) {
-  std::string text;
+/// The reason of the end, with what else is known about it.
+std::string TrialRun::explained(const TrialEnd& end) {
+  std::string causes;
   if (may_have_stopped_sut(end))
-    if (const auto stopped = suts_.stopped()) text += "; " + *stopped;
-  if (has_unexplained_sut(end)) text += suts_.post_mortem(end.report.reason);
-  if (end.report.end == RunEnd::kSimulatorLost) text += simulator_.post_mortem();
-  return text + reach_hint(end);
+    if (const auto stopped = suts_.stopped()) causes += "; " + *stopped;
+  if (has_unexplained_sut(end)) causes += suts_.post_mortem(end.report.reason);
+  if (end.report.end == RunEnd::kSimulatorLost) causes += simulator_.post_mortem();
+  return with_causes(end.report.reason, causes) + reach_hint(end);
 }
 
 /// What to try if a SUT on a board could not reach this machine.

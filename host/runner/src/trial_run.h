@@ -75,7 +75,7 @@ class TrialRun {
   std::vector<campaign::Doubt> doubts(const coordinator::RunReport& report) const;
   std::optional<EarlyStop> early_stop();
   void watch(const coordinator::RunStatus& status, StallWatch& stalls);
-  std::string explanation(const TrialEnd& end);
+  std::string explained(const TrialEnd& end);
   std::string reach_hint(const TrialEnd& end);
   void end_suts(const TrialEnd& end);
 

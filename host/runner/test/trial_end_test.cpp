@@ -44,5 +44,14 @@ TEST(TrialEnd, TellsWhichCausesToLookFor) {
   }
 }
 
+TEST(TrialEnd, NamesTheCauseOfALostSutBeforeItsConnection) {
+  EXPECT_EQ(with_causes("lost the SUT of UAV \"a\": it was computing; it closed", "; it crashed"),
+            "lost the SUT of UAV \"a\": it crashed; it was computing; it closed");
+  EXPECT_EQ(with_causes("the SUT of UAV \"a\" ended the run: why", "; it crashed"),
+            "the SUT of UAV \"a\" ended the run: why; it crashed");
+  EXPECT_EQ(with_causes("lost the SUT of UAV \"a\": it closed", ""),
+            "lost the SUT of UAV \"a\": it closed");
+}
+
 }  // namespace
 }  // namespace tether::runner
