@@ -14,6 +14,8 @@ fs::path make_output_folder(fs::path out, const fs::path& record, const char* na
                             const std::set<std::string>& drawings, const char* pattern) {
   if (out.empty()) out = record.parent_path() / name;
   std::error_code error;
+  if (fs::is_regular_file(out, error))
+    campaign::refuse_folder(out, "is a file, not a folder. Choose another name with --out.");
   fs::create_directories(out, error);
   if (error) throw Error(ErrorCode::kSetup, {out.string()}, error.message()).about(out.string());
   for (const auto& entry : fs::directory_iterator(out, error)) {

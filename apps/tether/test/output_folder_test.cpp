@@ -22,5 +22,14 @@ TEST(OutputFolder, RefusesDrawingsOfAnotherRecordOnly) {
   EXPECT_EQ(error.subject(), plots);
 }
 
+TEST(OutputFolder, RefusesAFile) {
+  const ScratchFolder scratch;
+  const auto file = scratch.write("notes.txt", "");
+  const Error error = thrown_error(ErrorCode::kUsage, [&] {
+    make_output_folder(file, scratch.path("record.mcap"), "plots", {}, "*");
+  });
+  EXPECT_EQ(error.subject(), file);
+}
+
 }  // namespace
 }  // namespace tether::app

@@ -145,6 +145,8 @@ FolderClaim::FolderClaim(const fs::path& folder, By by) {
   const fs::path whole = whole_path(folder);
   (void)share_campaigns(whole, whole, folder);  // makes nothing where it is refused
   std::error_code failed;
+  if (fs::is_regular_file(folder, failed))
+    refuse_folder(folder, "is a file, not a folder. Choose another name with --out.");
   fs::create_directories(folder, failed);
   if (failed) fail(folder, "cannot be made", failed.value());
   const auto lock_campaign = [&](int how, const char* who) {

@@ -142,7 +142,9 @@ TEST_F(Disk, ThatGetsFullInACampaignKeepsWhatIsFinished) {
 // Further cases: host/runner/test/trial_folder_test.cpp.
 TEST_F(Folder, ThatIsAFileIsNamed) {
   write_text(out_, "mine");
-  expect_no_result(run(flight()), {out_.string() + ": ", "--out"});
+  const Output output = run(flight());
+  EXPECT_EQ(output.code, 2);
+  EXPECT_THAT(output.err, HasSubstr(out_.string() + ": is a file, not a folder"));
   EXPECT_EQ(read_text(out_), "mine");
 }
 
