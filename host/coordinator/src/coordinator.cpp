@@ -251,7 +251,7 @@ SimTime Coordinator::Impl::paced(SimTime target, WallTime now) {
 }
 
 void Coordinator::Impl::end(const Ending& ending) {
-  if (!ended_) ended_ = {ending.how, printable(ending.reason)};
+  if (!ended_) ended_ = {ending.how, printable(ending.reason), printable(ending.seen)};
 }
 
 // Limits of WT, status and requests of the caller. No decision of the barrier depends on them.
@@ -361,19 +361,21 @@ RunReport Coordinator::Impl::close_run() {
   if (running_ && ended_->how != RunEnd::kSimulatorLost) stepper_.log_contacts();
   if (running_) log_in_transit();
   record::Footer& footer = log_.footer();
-  RunReport report{.end = ended_->how,
-                   .reason = ended_->reason,
-                   .st = st(),
-                   .began = running_,
-                   .wall = running_ ? host_clock_() - started_ : Duration(0),
-                   .interactions = footer.interactions,
-                   .images = log_.images(),
-                   .causality_violations = footer.causality_violations,
-                   .largest_lag = footer.largest_lag,
-                   .largest_grid_error = footer.largest_grid_error,
-                   .stops = footer.stops,
-                   .largest_overshoot = footer.largest_overshoot,
-                   .suts = {}};
+  RunReport report{
+      .end = ended_->how,
+      .reason = ended_->seen.empty() ? ended_->reason : ended_->reason + ": " + ended_->seen,
+      .causes_at = ended_->reason.size(),
+      .st = st(),
+      .began = running_,
+      .wall = running_ ? host_clock_() - started_ : Duration(0),
+      .interactions = footer.interactions,
+      .images = log_.images(),
+      .causality_violations = footer.causality_violations,
+      .largest_lag = footer.largest_lag,
+      .largest_grid_error = footer.largest_grid_error,
+      .stops = footer.stops,
+      .largest_overshoot = footer.largest_overshoot,
+      .suts = {}};
   for (const Session& session : sessions_) {
     if (session.joined() && !session.left)
       refuse(session.peer, link::Refusal::Reason::kRunEnded, "the run has ended: " + report.reason);

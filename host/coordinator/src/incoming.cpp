@@ -102,8 +102,8 @@ void Coordinator::Impl::on_closed(link::PeerId peer, const Failure& failure) {
   if (failure.kind == Failure::Kind::kDisconnected && awaits_only_confirmation(*session)) return;
   const std::string where =
       running_ && is_synchronised() ? describe_state(party(*session, host_clock_())) + "; " : "";
-  end({RunEnd::kSutLost,
-       fmt::format("lost the SUT of UAV \"{}\": {}{}", session->uav_name, where, failure.message)});
+  end({RunEnd::kSutLost, fmt::format("lost the SUT of UAV \"{}\"", session->uav_name),
+       where + failure.message});
 }
 
 void Coordinator::Impl::join(link::PeerId peer, const link::Hello& hello) {

@@ -33,11 +33,11 @@ bool lacks_sut(const TrialEnd& end) {
          std::ranges::any_of(end.report.suts, [](const auto& sut) { return sut.sut.empty(); });
 }
 
-std::string with_causes(const std::string& reason, const std::string& causes) {
-  const std::size_t name_end = reason.find("\": ");
-  if (causes.empty() || !reason.starts_with("lost the SUT of UAV") || name_end == reason.npos)
-    return reason + causes;
-  return reason.substr(0, name_end + 2) + causes.substr(1) + "; " + reason.substr(name_end + 3);
+std::string with_causes(const coordinator::RunReport& report, const std::string& causes) {
+  const std::size_t at = report.causes_at;
+  if (causes.empty() || at >= report.reason.size()) return report.reason + causes;
+  return report.reason.substr(0, at) + ": " + causes.substr(2) + "; " +
+         report.reason.substr(at + 2);
 }
 
 }  // namespace tether::runner

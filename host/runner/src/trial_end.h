@@ -36,8 +36,8 @@ bool has_unexplained_sut(const TrialEnd& end);
 /// The run did not begin because a SUT did not join.
 bool lacks_sut(const TrialEnd& end);
 
-/// The reason of an end, with the causes that were found afterwards, each after "; ". Those of a
-/// SUT that was lost come before its state and its connection.
-std::string with_causes(const std::string& reason, const std::string& causes);
+/// The reason of an end, with causes that were found afterwards, each after "; ": before what the
+/// coordinator noticed of it.
+std::string with_causes(const coordinator::RunReport& report, const std::string& causes);
 
 }  // namespace tether::runner

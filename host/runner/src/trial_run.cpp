@@ -399,7 +399,7 @@ std::string TrialRun::explained(const TrialEnd& end) {
     if (const auto stopped = suts_.stopped()) causes += "; " + *stopped;
   if (has_unexplained_sut(end)) causes += suts_.post_mortem(end.report.reason);
   if (end.report.end == RunEnd::kSimulatorLost) causes += simulator_.post_mortem();
-  return with_causes(end.report.reason, causes) + reach_hint(end);
+  return with_causes(end.report, causes) + reach_hint(end);
 }
 
 /// What to try if a SUT on a board could not reach this machine.

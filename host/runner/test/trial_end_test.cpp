@@ -45,12 +45,14 @@ TEST(TrialEnd, TellsWhichCausesToLookFor) {
 }
 
 TEST(TrialEnd, NamesTheCauseOfALostSutBeforeItsConnection) {
-  EXPECT_EQ(with_causes("lost the SUT of UAV \"a\": it was computing; it closed", "; it crashed"),
-            "lost the SUT of UAV \"a\": it crashed; it was computing; it closed");
-  EXPECT_EQ(with_causes("the SUT of UAV \"a\" ended the run: why", "; it crashed"),
-            "the SUT of UAV \"a\" ended the run: why; it crashed");
-  EXPECT_EQ(with_causes("lost the SUT of UAV \"a\": it closed", ""),
-            "lost the SUT of UAV \"a\": it closed");
+  coordinator::RunReport report;
+  report.reason = "lost the SUT: it was computing; it closed";
+  report.causes_at = 12;
+  EXPECT_EQ(with_causes(report, "; it crashed"),
+            "lost the SUT: it crashed; it was computing; it closed");
+  EXPECT_EQ(with_causes(report, ""), report.reason);
+  report.causes_at = report.reason.size();
+  EXPECT_EQ(with_causes(report, "; it crashed"), report.reason + "; it crashed");
 }
 
 }  // namespace

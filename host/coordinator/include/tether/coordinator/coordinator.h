@@ -91,6 +91,7 @@ std::string_view name(RunEnd end);
 struct Ending {
   RunEnd how = RunEnd::kFinished;
   std::string reason;  ///< one line; names the cause
+  std::string seen{};  ///< of a cause that the coordinator does not know: how it noticed
 };
 
 /// What the threads of a SUT do at one instant.
@@ -125,6 +126,8 @@ struct SutReport {
 struct RunReport {
   RunEnd end = RunEnd::kFinished;
   std::string reason;  ///< one line; names the cause
+  /// Where in it another cause belongs: before ": " and how the coordinator noticed, or at its end.
+  std::size_t causes_at = 0;
   SimTime st;          ///< at the end
   bool began = false;  ///< whether every SUT has joined
   Duration wall{0};    ///< since then
