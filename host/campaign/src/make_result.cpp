@@ -10,7 +10,6 @@
 #include <fmt/ranges.h>
 
 #include <tether/base/text_table.h>
-#include <tether/board/target_readings.h>
 #include <tether/campaign/copies.h>
 #include <tether/campaign/result.h>
 
@@ -183,22 +182,6 @@ void settle(TrialResult& result, const std::string& reason_of_end, const std::st
                           : (missed.empty() ? "the time limit was reached" : missed);
 }
 
-// If a board was throttled, the reason of the result says so.
-TargetReport report_of(TrialResult& result, const record::TargetInfo& info,
-                       const record::Readings& after) {
-  TargetReport target{
-      .name = info.name, .address = info.address, .before = info.before, .after = after};
-  const bool is_board = !info.address.empty();
-  for (const board::RunWarning& warning :
-       board::run_warnings(target.before, target.after, is_board)) {
-    target.warnings.push_back(warning.text);
-    if (!warning.spoils || !is_board) continue;
-    target.is_spoiled = true;
-    result.reason += "; but " + warning.text;
-  }
-  return target;
-}
-
 }  // namespace
 
 TrialResult make_result(const scenario::Scenario& scenario, const scenario::Condition& condition,
@@ -233,16 +216,7 @@ TrialResult make_result(const scenario::Scenario& scenario, const scenario::Cond
   const double max_speed_m_s = scenario.max_contact_speed_m_s;
   result.contacts = contacts_of(record, max_speed_m_s);
   settle(result, footer.reason, why_crashed(record, max_speed_m_s));
-  if (record.header.target)
-    result.this_run.target =
-        report_of(result, *record.header.target,
-                  record.footer ? record.footer->target_after : record::Readings{});
   return result;
-}
-
-void add_target(TrialResult& result, const record::TargetInfo& info,
-                const record::Readings& after) {
-  result.this_run.more_targets.push_back(report_of(result, info, after));
 }
 
 record::EmulatorInfo emulator_of(const scenario::Condition& condition) {

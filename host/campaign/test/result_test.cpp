@@ -290,26 +290,6 @@ TEST_F(MakeResult, TakesClockTargetAndProfilesFromScenarioAndCondition) {
   EXPECT_THAT(result.profiles, testing::ElementsAre("rig", "top"));
 }
 
-TEST_F(MakeResult, MentionsAThrottledBoardInItsReason) {
-  record::Record record = finished_record();
-  record.header.target = {"board", "ssh://pi@board", {{"throttled", "0x0"}}};
-  const std::string reason = make(record, kReached).reason;
-  EXPECT_FALSE(make(record, kReached).this_run.target->is_spoiled);
-
-  record.footer->target_after = {{"throttled", "0x50005"}};
-  const TrialResult result = make(record, kReached);
-  ASSERT_TRUE(result.this_run.target);
-  EXPECT_TRUE(result.this_run.target->is_spoiled);
-  EXPECT_EQ(result.this_run.target->after.at("throttled"), "0x50005");
-  EXPECT_EQ(result.outcome, Outcome::kGoalReached);
-  EXPECT_EQ(result.reason, reason + "; but " + result.this_run.target->warnings.front());
-
-  // For the host, whose times need not be its own, it is a warning.
-  record.header.target->address.clear();
-  EXPECT_EQ(make(record, kReached).reason, reason);
-  EXPECT_EQ(make(record, kReached).this_run.target->warnings.size(), 1u);
-}
-
 TEST_F(MakeResult, ReportsStopsOnlyOfASynchronisedConcurrentSut) {
   record::Record record = finished_record();
   record.header.suts[0].concurrent = true;

@@ -85,6 +85,21 @@ campaign::MachineLoad MachineWatch::load(bool knows_programs) {
           .others = knows_programs ? others_ : 0.0};
 }
 
+campaign::TargetReport report_of(const record::TargetInfo& info, const record::Readings& after,
+                                 std::string& reason) {
+  campaign::TargetReport target{
+      .name = info.name, .address = info.address, .before = info.before, .after = after};
+  const bool is_board = !info.address.empty();
+  for (const board::RunWarning& warning :
+       board::run_warnings(target.before, target.after, is_board)) {
+    target.warnings.push_back(warning.text);
+    if (!warning.spoils || !is_board) continue;
+    target.is_spoiled = true;
+    reason += "; but " + warning.text;
+  }
+  return target;
+}
+
 std::optional<campaign::MachineLoad> load_of_board(const campaign::TargetReport& target) {
   const auto share = board::contended_share(target.before, target.after);
   if (target.address.empty() || !share) return std::nullopt;

@@ -39,6 +39,12 @@ class MachineWatch {
   double others_ = 0.0;
 };
 
+/// Of a machine whose state was read before and after a run. If a board was throttled, its times
+/// cannot be trusted, and `reason` says so. For the host, whose times need not be its own, that is
+/// a warning.
+campaign::TargetReport report_of(const record::TargetInfo& info, const record::Readings& after,
+                                 std::string& reason);
+
 /// Of a board, from its readings. None: this is the host, or the board does not tell.
 std::optional<campaign::MachineLoad> load_of_board(const campaign::TargetReport& target);
 

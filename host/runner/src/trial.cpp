@@ -78,11 +78,20 @@ void complete(record::Record& record, const Conducted& conducted) {
   record.footer->target_after = conducted.target_after;
 }
 
+campaign::TrialResult make_result(const TrialSpec& spec, const record::Record& record,
+                                  const std::vector<campaign::TaskEnd>& task_ends) {
+  auto result = campaign::make_result(spec.scenario, spec.condition, record, task_ends);
+  if (record.header.target && record.footer)
+    result.this_run.target =
+        report_of(*record.header.target, record.footer->target_after, result.reason);
+  return result;
+}
+
 /// The result of a run whose record could not be written to its end, from what there is of it. The
 /// trial counts as not set up, so that a campaign repeats it.
 campaign::TrialResult unrecorded(const TrialSpec& spec, const coordinator::RunReport& report) try {
   const record::Record record = record::read_record(spec.folder / kRecordFile);
-  auto result = campaign::make_result(spec.scenario, spec.condition, record, {});
+  auto result = make_result(spec, record, {});
   const audit::Verdict verdict = audit::audit(record);
   result.audit = {verdict.passed(), audit::to_line(verdict)};
   result.end = campaign::kEndSetupFailed;
@@ -114,7 +123,7 @@ campaign::TrialResult evaluate(const TrialSpec& spec, const Conducted& conducted
   if (report.end == RunEnd::kRecordFailed) return unrecorded(spec, report);
   record::Record record = record::read_record(file);
   complete(record, conducted);
-  auto result = campaign::make_result(spec.scenario, spec.condition, record, task_ends(report));
+  auto result = make_result(spec, record, task_ends(report));
   const audit::Verdict verdict = audit::audit(record);
   result.audit = {verdict.passed(), audit::to_line(verdict)};
   if (result.outcome == campaign::Outcome::kFailed)
@@ -173,7 +182,7 @@ campaign::TrialResult fly(const TrialSpec& spec, const StartSimulator& start,
         TrialRun(spec, inputs, *simulator, boards, observer, stop).conduct();
     auto result = evaluate(spec, conducted);
     for (const MachineReadings& machine : conducted.others)
-      campaign::add_target(result, machine.info, machine.after);
+      result.this_run.more_targets.push_back(report_of(machine.info, machine.after, result.reason));
     result.this_run.notes = conducted.notes;
     result.this_run.doubts = conducted.doubts;
     result.this_run.loads = conducted.loads;

@@ -86,5 +86,20 @@ TEST_F(Machine, IsReadInTheTimeOfTheClock) {
   }
 }
 
+TEST(TargetReport, MentionsAThrottledBoardInTheReason) {
+  record::TargetInfo info{"board", "ssh://pi@board", {{"throttled", "0x0"}}};
+  std::string reason = "reached";
+  EXPECT_FALSE(report_of(info, {}, reason).is_spoiled);
+  EXPECT_EQ(reason, "reached");
+  const auto board = report_of(info, {{"throttled", "0x50005"}}, reason);
+  EXPECT_TRUE(board.is_spoiled);
+  EXPECT_EQ(board.after.at("throttled"), "0x50005");
+  EXPECT_EQ(reason, "reached; but " + board.warnings.front());
+  info.address.clear();
+  reason = "reached";
+  EXPECT_EQ(report_of(info, {{"throttled", "0x50005"}}, reason).warnings.size(), 1u);
+  EXPECT_EQ(reason, "reached");
+}
+
 }  // namespace
 }  // namespace tether::runner

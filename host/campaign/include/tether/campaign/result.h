@@ -284,9 +284,6 @@ struct TaskEnd {
 TrialResult make_result(const scenario::Scenario& scenario, const scenario::Condition& condition,
                         const record::Record& record, const std::vector<TaskEnd>& task_ends);
 
-/// Adds the readings of a further machine of a mixed fleet.
-void add_target(TrialResult& result, const record::TargetInfo& info, const record::Readings& after);
-
 /// For a trial that ran but whose numbers cannot be trusted: it counts as failed for `reason`, and
 /// no metric keeps its value.
 void invalidate(TrialResult& result, const std::string& reason);
