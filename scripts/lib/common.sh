@@ -28,7 +28,7 @@ packages_build=(
 )
 # The emulator whose instructions are counted.
 packages_demo=(qemu-user)
-packages_test=(git python3 libgtest-dev libgmock-dev libbenchmark-dev clang-format qemu-user)
+packages_test=(git python3 cloc libgtest-dev libgmock-dev libbenchmark-dev clang-format qemu-user)
 # The library as a user builds against it, and the manual pages.
 packages_test+=(make pkgconf mandoc)
 # The schema of JUnit files.
