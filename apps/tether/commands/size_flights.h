@@ -43,7 +43,7 @@ class SizeFlights {
   bool has_margins_ = false;
 };
 
-/// What flights have shown so far, for the progress: "so far about 3.2 times slower, at least 1.4".
+/// What flights have shown so far, for the progress: "so far about 3.2 times slower".
 std::string known_text(const sizing::Threshold& threshold);
 
 }  // namespace tether::app

@@ -155,7 +155,7 @@ std::string doubts_text(const ConditionVerdict& condition) {
     if (doubt.largest.is_of_unseen_time()
             ? condition.ruling != Ruling::kUnseen
             : condition.flown > 0 && (doubt.largest.kind == campaign::Doubt::Kind::kBusyMachine ||
-                                      is_within_spread(condition)))
+                                      is_within_spread(condition, doubt)))
       text += " " + capital(doubt_text(doubt, condition)) + ".";
   if (condition.failed > 0 && condition.flown > 0)
     text += fmt::format(" {} failed and {} not counted.", counted(condition.failed, "flight"),

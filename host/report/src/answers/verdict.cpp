@@ -144,11 +144,15 @@ Ruling ruling_of(const ConditionVerdict& verdict, const campaign::ConditionResul
 
 }  // namespace
 
+bool is_within_spread(const ConditionVerdict& verdict, const FlightsInDoubt& doubt) {
+  return !doubt.largest.is_of_unseen_time() && verdict.tightest &&
+         std::abs(verdict.tightest->second) < doubt.largest.amount;
+}
+
 bool is_within_spread(const ConditionVerdict& verdict) {
-  return verdict.tightest && std::ranges::any_of(verdict.doubts, [&](const FlightsInDoubt& doubt) {
-           return !doubt.largest.is_of_unseen_time() &&
-                  std::abs(verdict.tightest->second) < doubt.largest.amount;
-         });
+  return std::ranges::any_of(verdict.doubts, [&](const FlightsInDoubt& doubt) {
+    return is_within_spread(verdict, doubt);
+  });
 }
 
 ConditionVerdict verdict_of(const campaign::ConditionResults& results) {

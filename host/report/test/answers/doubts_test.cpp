@@ -47,6 +47,9 @@ TEST(Verdict, OfAProgramThatWaitedALittleHoldsIfThatCannotChangeIt) {
               testing::AllOf(HasSubstr("within the spread"),
                              HasSubstr("waited 21.0 % of its time on something that Tether")));
   EXPECT_EQ(verdict_of(scenario).advice[0].kind, Advice::Kind::kShowWaits);
+  doubts = {{campaign::Doubt::Kind::kSlightWait, "uav1", 0.03},
+            {campaign::Doubt::Kind::kBusyMachine, "", 0.3}};
+  EXPECT_THAT(answers_of({verdict_of(scenario)})[0].rest, testing::Not(HasSubstr("waited")));
 }
 
 // One more would be beyond the limit.

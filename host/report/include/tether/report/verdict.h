@@ -122,7 +122,8 @@ struct ConditionVerdict {
   /// None: there is no such doubt.
   const FlightsInDoubt* doubt(campaign::Doubt::Kind kind) const;
 };
-/// Whether what is in doubt could have moved a flight over its limits.
+/// Whether what is in doubt, or this doubt alone, could have moved a flight over its limits.
+bool is_within_spread(const ConditionVerdict& verdict, const FlightsInDoubt& doubt);
 bool is_within_spread(const ConditionVerdict& verdict);
 
 struct Advice {
