@@ -173,6 +173,16 @@ TEST_F(Folder, ResumesACampaignThatWasKilledBeforeItHadPlanned) {
   EXPECT_EQ(open(OpenMode::kResume).missing().size(), 9u);
 }
 
+// Whichever comes first begins; what else shards leave is no content.
+TEST_F(Folder, IsBegunOrContinuedByAShard) {
+  std::filesystem::create_directories(out_ / kShardsFolder);
+  EXPECT_EQ(open(OpenMode::kShard).missing().size(), 9u);
+  EXPECT_EQ(open(OpenMode::kShard).missing().size(), 9u);
+  EXPECT_EQ(open(OpenMode::kResume).missing().size(), 9u);
+  campaign_.name = "other";
+  expect_refused(OpenMode::kShard, "'study', not 'other'");
+}
+
 TEST_F(Folder, RefusesAnotherCampaignAndACorruptManifest) {
   open(OpenMode::kFresh);
   campaign_.name = "other";

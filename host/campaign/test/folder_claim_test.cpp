@@ -92,6 +92,16 @@ TEST_F(Claim, OfACampaignExcludesOthersFromItsFolderAndAllBelowUntilItIsKilled) 
   EXPECT_NO_THROW(claim(out_, By::kCampaign));
 }
 
+TEST_F(Claim, OfAShardAdmitsOtherShardsAndNoCampaign) {
+  {
+    const OtherProcess first(out_, By::kShard);
+    claim(out_, By::kShard);
+    refusal(out_, By::kCampaign);
+  }
+  const OtherProcess campaign(out_, By::kCampaign);
+  EXPECT_THAT(refusal(out_, By::kShard).what(), HasSubstr("a campaign is running in"));
+}
+
 TEST_F(Claim, OfACampaignAdmitsTheProcessesThatItStarts) {
   const FolderClaim campaign(out_, By::kCampaign);
   const OtherProcess trial(out_ / "hover", By::kRun);
