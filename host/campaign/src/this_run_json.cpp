@@ -31,6 +31,23 @@ Doubt read_doubt(const JsonReader& json) {
           json.number("amount")};
 }
 
+Json json_of(const Sizing& sizing) {
+  Json json{{"scenario", sizing.scenario}, {"condition", sizing.condition}};
+  if (!sizing.target.empty()) json["target"] = sizing.target;
+  if (sizing.between) {
+    json["least"] = sizing.between->first;
+    json["most"] = sizing.between->second;
+  }
+  return json;
+}
+
+Sizing read_sizing(const JsonReader& json) {
+  Sizing sizing{.scenario = json.text("scenario"), .condition = json.text("condition")};
+  if (json.has("target")) sizing.target = json.text("target");
+  if (json.has("least")) sizing.between = {json.number("least"), json.number("most")};
+  return sizing;
+}
+
 Json json_of(const MachineLoad& load) {
   return Json{
       {"machine", load.machine}, {"block_spread", load.block_spread}, {"others", load.others}};
@@ -77,7 +94,7 @@ Json json_of(const ThisRun& run) {
   for (const Doubt& doubt : run.doubts) json["doubts"].push_back(json_of(doubt));
   for (const MachineLoad& load : run.loads) json["loads"].push_back(json_of(load));
   if (!run.sut_files.empty()) json["sut_files"] = run.sut_files;
-  if (!run.size_arguments.empty()) json["size_arguments"] = run.size_arguments;
+  if (run.sizing) json["sizing"] = json_of(*run.sizing);
   if (run.simulator)
     json["simulator"] = Json{{"stepping_s", exact_seconds(run.simulator->stepping)},
                              {"drawing_s", exact_seconds(run.simulator->drawing)},
@@ -107,7 +124,7 @@ ThisRun read_this_run(const JsonReader& json) {
   if (json.has("loads"))
     for (const JsonReader& load : json.objects("loads")) run.loads.push_back(read_load(load));
   if (json.has("sut_files")) run.sut_files = json.texts("sut_files");
-  if (json.has("size_arguments")) run.size_arguments = json.texts("size_arguments");
+  if (json.has("sizing")) run.sizing = read_sizing(json.object("sizing"));
   if (json.has("simulator")) run.simulator = read_simulator(json.object("simulator"));
   return run;
 }

@@ -39,7 +39,7 @@ TEST_F(Result, ReadsBackWithEverythingMissing) {
                             {Doubt::Kind::kBusyMachine, "pi", 0.3}};
   failed.this_run.loads = {{"pi", 0.3, 0.0}};
   failed.this_run.sut_files = {"flight.csv", "pictures/1.png"};
-  failed.this_run.size_arguments = {"face_anchor", "--condition", "target, counted"};
+  failed.this_run.sizing = {"face_anchor", "target, counted", "t.toml", std::pair(0.75, 40.0)};
   failed.this_run.simulator = {milliseconds(1), milliseconds(2), 5, 4, 3};
   write_result(scratch_.path(), failed);
   EXPECT_EQ(read_result(scratch_.path()), failed);

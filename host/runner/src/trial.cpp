@@ -1,7 +1,7 @@
 #include "drawing_threads.h"
 #include "local_sut.h"
 #include "machine_watch.h"
-#include "size_arguments.h"
+#include "sizing_of.h"
 #include "trial_run.h"
 #include "warning_log.h"
 
@@ -205,8 +205,7 @@ campaign::TrialResult fly(const TrialSpec& spec, const StartSimulator& start,
 /// Writes the result. @throws Error(kSetup) with the end of the run as well.
 void keep(const TrialSpec& spec, const TrialFolder& folder, campaign::TrialResult& result) try {
   result.this_run.sut_files = folder.files_of_suts();
-  result.this_run.size_arguments =
-      size_arguments(spec, scenario::ShippedFiles::of_program(os::own_file()));
+  result.this_run.sizing = sizing_of(spec, scenario::ShippedFiles::of_program(os::own_file()));
   if (!result.warnings.empty()) {
     os::write_file_atomically(spec.folder / kWarningsFile,
                               grouped(result.warnings, std::numeric_limits<std::size_t>::max()));

@@ -89,6 +89,7 @@ void read(const Json& json, std::vector<Value>& values) {
 /// so that results show both.
 void move_to(scenario::Condition& condition, const scenario::Target& target, bool keep_name) {
   scenario::place_on(condition, target);
+  condition.moved_from = condition.name;
   condition.name = keep_name ? fmt::format("{} on {}", condition.name, target.name) : target.name;
   if (!keep_name) condition.description = target.description;
 }

@@ -15,13 +15,15 @@ namespace {
 
 /// "`tether size face_anchor --condition target`"; empty: it cannot fly this.
 std::string size_command(const ConditionVerdict& condition, bool searches_faster) {
-  if (condition.size_arguments.empty()) return "";
-  std::string command = "tether size";
-  for (const std::string& word : condition.size_arguments) command += " " + os::shell_word(word);
-  const auto names = [&](const char* option) {
-    return std::ranges::count(condition.size_arguments, option) > 0;
-  };
-  if (searches_faster && !names("--target") && !names("--between")) command += " --between 0.1,2";
+  if (!condition.sizing) return "";
+  const auto& [scenario, name, target, between] = *condition.sizing;
+  std::string command =
+      fmt::format("tether size {} --condition {}", os::shell_word(scenario), os::shell_word(name));
+  if (!target.empty()) command += " --target " + os::shell_word(target);
+  if (between)
+    command += fmt::format(" --between {:g},{:g}", between->first, between->second);
+  else if (searches_faster && target.empty())
+    command += " --between 0.1,2";
   return "`" + command + "`";
 }
 
@@ -75,11 +77,12 @@ std::string stage_advice(const Advice& advice, const ConditionVerdict& lead) {
 
 /// For a condition of a scenario as it is.
 std::string uavs_advice(const ConditionVerdict& lead) {
-  const std::vector<std::string>& words = lead.size_arguments;
-  constexpr std::size_t kOwnCondition = 3;  // SCENARIO --condition NAME
-  if (!is_one_board_for_all(lead) || words.size() != kOwnCondition) return "";
-  return fmt::format("; to find how many UAVs it carries: `tether size {} {} {} --axis uavs`",
-                     os::shell_word(words[0]), words[1], os::shell_word(words[2]));
+  if (!is_one_board_for_all(lead) || !lead.sizing || !lead.sizing->target.empty() ||
+      lead.sizing->between)
+    return "";
+  return fmt::format(
+      "; to find how many UAVs it carries: `tether size {} --condition {} --axis uavs`",
+      os::shell_word(lead.sizing->scenario), os::shell_word(lead.sizing->condition));
 }
 
 std::string sentence_of(const Advice& advice, const Verdict& verdict) {

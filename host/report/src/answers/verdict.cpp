@@ -159,7 +159,7 @@ ConditionVerdict verdict_of(const campaign::ConditionResults& results) {
   ConditionVerdict verdict{.condition = results.condition, .planned = results.planned};
   if (!results.trials.empty()) {
     const campaign::ThisRun& first = results.trials.front().this_run;
-    verdict.size_arguments = first.size_arguments;
+    verdict.sizing = first.sizing;
     verdict.is_on_real_board = first.target && !first.target->address.empty();
   }
   std::vector<const campaign::TrialResult*> flown;

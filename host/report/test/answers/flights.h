@@ -17,7 +17,7 @@ inline campaign::ScenarioResults flights(std::size_t reached, std::size_t missed
     trial.policy = "conservative_barrier";
     trial.end = campaign::kEndFinished;
     trial.metrics[0].max = 5.0;
-    trial.this_run.size_arguments = {"turn", "--condition", "target"};
+    trial.this_run.sizing = {.scenario = "turn", .condition = "target"};
     if (!trial.metrics[0].is_met()) trial.outcome = campaign::Outcome::kGoalMissed;
   }
   return scenario;

@@ -165,16 +165,18 @@ TEST(Verdict, SaysTheAnswerWithItsEvidenceAndWhatToDo) {
 
 // A command that the user can type: of that scenario, and quoted.
 TEST(Verdict, NamesTheCommandThatFindsTheThreshold) {
-  const auto advice = [](std::size_t reached, std::vector<std::string> arguments) {
+  const auto advice = [](std::size_t reached, std::optional<campaign::Sizing> sizing) {
     campaign::ScenarioResults scenario = flights(reached, 10 - reached);
-    scenario.conditions[0].trials[0].this_run.size_arguments = std::move(arguments);
+    scenario.conditions[0].trials[0].this_run.sizing = std::move(sizing);
     return advice_of({verdict_of(scenario)}).back();
   };
-  EXPECT_THAT(advice(10, {"/my own/s.toml", "--condition", "target, counted"}),
+  EXPECT_THAT(advice(10, campaign::Sizing{"/my own/s.toml", "target, counted"}),
               EndsWith("`tether size '/my own/s.toml' --condition 'target, counted'`"));
-  EXPECT_THAT(advice(0, {"turn", "--condition", "host"}), EndsWith("host --between 0.1,2`"));
-  EXPECT_THAT(advice(0, {"turn", "--condition", "host", "--target", "b.toml"}),
+  EXPECT_THAT(advice(0, campaign::Sizing{"turn", "host"}), EndsWith("host --between 0.1,2`"));
+  EXPECT_THAT(advice(0, campaign::Sizing{"turn", "host", "b.toml"}),
               EndsWith("--target b.toml`"));  // of which the host's time is the unit
+  EXPECT_THAT(advice(0, campaign::Sizing{"turn", "host", "", std::pair(0.75, 40.0)}),
+              EndsWith("host --between 0.75,40`"));
   EXPECT_EQ(advice(0, {}), "To see whether speed matters, fly on a faster computer.");
   EXPECT_THAT(advice(10, {}), StartsWith("`tether size` finds the headroom"));
 }
@@ -183,7 +185,7 @@ TEST(Verdict, NamesTheCommandThatFindsTheThreshold) {
 TEST(Verdict, OfARealBoardAdvisesToSizeAVirtualTargetOfIt) {
   campaign::ScenarioResults scenario = flights(10, 0);
   campaign::ThisRun& run = scenario.conditions[0].trials[0].this_run;
-  run.size_arguments.clear();
+  run.sizing.reset();
   run.target = {.name = "pi", .address = "ssh://pi"};
   EXPECT_THAT(advice_of({verdict_of(scenario)}).back(), StartsWith("A real board cannot"));
 }
@@ -295,7 +297,7 @@ TEST(Verdict, SaysWhatAnImageCostsOnASharedBoard) {
   pace.programs = 2;
   pace.waiting = 0.48;
   Verdict verdict = verdict_of(flights(10, 0), {pace});
-  verdict.conditions[0].size_arguments = {"pair", "--condition", "one for all"};
+  verdict.conditions[0].sizing = {.scenario = "pair", .condition = "one for all"};
   EXPECT_THAT(answers_of({verdict})[0].rest,
               HasSubstr("an image costs 100 ms on “obc”, 48 % of it waiting for the cores that 2 "
                         "programs share, and “detect” takes 81 % of the computing time"));

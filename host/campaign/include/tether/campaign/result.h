@@ -182,6 +182,17 @@ struct MachineLoad {
   friend bool operator==(const MachineLoad&, const MachineLoad&) = default;
 };
 
+/// What `tether size` flies to find how slow the computer of a trial may be.
+struct Sizing {
+  std::string scenario;   ///< name of a shipped one, or a file
+  std::string condition;  ///< of the scenario
+  std::string target{};   ///< the file of one that the command line gave; empty: none
+  /// Slowdowns around that of the trial; none: it was not slowed down.
+  std::optional<std::pair<double, double>> between{};
+
+  friend bool operator==(const Sizing&, const Sizing&) = default;
+};
+
 /// Everything that may differ between two runs of the same trial with the same execution times.
 struct ThisRun {
   std::string started_at;  ///< ISO 8601, UTC
@@ -197,9 +208,7 @@ struct ThisRun {
   std::vector<MachineLoad> loads{};          ///< of machines whose clock was read; also if normal
   std::vector<std::string> sut_files{};  ///< written by SUTs; paths in the trial's folder, sorted
   std::optional<SimulatorFigures> simulator{};  ///< none: not measured
-  /// With these, `tether size` finds how slow the computer may be: scenario, "--condition", its
-  /// name, and of a target of the command line "--target" and its file. Empty: not possible.
-  std::vector<std::string> size_arguments{};
+  std::optional<Sizing> sizing{};               ///< none: not possible
 
   friend bool operator==(const ThisRun&, const ThisRun&) = default;
 };

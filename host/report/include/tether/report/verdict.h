@@ -110,7 +110,7 @@ struct ConditionVerdict {
   std::string unreadable{};  ///< why the pace is not known, of the first record; empty: it has none
   std::optional<MissReason> miss{};  ///< of the three rulings on a missed goal
   /// As in campaign::ThisRun, of the first flight.
-  std::vector<std::string> size_arguments{};
+  std::optional<campaign::Sizing> sizing{};
   bool is_on_real_board = false;  ///< as far as the first flight says
 
   /// All that has flown is one flight: the only one, or one that was flown several times.

@@ -75,6 +75,8 @@ struct Condition {
   /// Of a condition that was slowed down: what of the scenario it is, and the slowdown that the
   /// values above contain. Empty: it was not.
   std::string slowed_from{};
+  /// The condition of the scenario that a target of the command line replaces. Empty: none does.
+  std::string moved_from{};
   double slowdown = 1.0;
 };
 

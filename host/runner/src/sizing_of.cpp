@@ -1,0 +1,52 @@
+#include "sizing_of.h"
+
+#include <algorithm>
+
+#include <tether/base/error.h>
+#include <tether/scenario/decidable.h>
+#include <tether/scenario/slowness.h>
+
+namespace tether::runner {
+namespace {
+
+std::string name_of(const std::filesystem::path& scenario, const scenario::ShippedFiles& shipped) {
+  std::error_code failed;
+  return std::filesystem::equivalent(shipped.folder() / "scenarios" / scenario.filename(), scenario,
+                                     failed)
+             ? scenario.stem().string()
+             : scenario.string();
+}
+
+}  // namespace
+
+std::optional<campaign::Sizing> sizing_of(const TrialSpec& spec,
+                                          const scenario::ShippedFiles& shipped) try {
+  if (!spec.scenario.settings.empty() || spec.scenario.has_laid_profile || spec.waits_for_sut)
+    return std::nullopt;
+  scenario::require_decidable(spec.scenario);
+  const bool is_slowed = !spec.condition.slowed_from.empty();
+  const std::string& moved_from = spec.condition.moved_from;
+  scenario::Condition slower =
+      scenario::pick_condition(spec.scenario, is_slowed            ? spec.condition.slowed_from
+                                              : moved_from.empty() ? spec.condition.name
+                                                                   : moved_from);
+  if (spec.condition.simulator != slower.simulator) return std::nullopt;
+  campaign::Sizing sizing{.scenario = name_of(spec.scenario.file, shipped),
+                          .condition = slower.name};
+  if (!moved_from.empty()) {
+    const auto& target = computer_of(spec.condition, 0).target;
+    if (is_slowed || !target || target->file.empty() || !slower.seats.empty()) return std::nullopt;
+    scenario::slowness(*target, spec.scenario, slower);
+    sizing.target = target->file.string();
+  }
+  // The answer may be on either side of what was flown.
+  constexpr double kBeside = 4.0;
+  const double flown = spec.condition.slowdown;
+  if (is_slowed) sizing.between = {std::min(1.0, flown / kBeside), std::max(40.0, flown * kBeside)};
+  scenario::slow_down(slower, 2.0);
+  return sizing;
+} catch (const Error&) {
+  return std::nullopt;
+}
+
+}  // namespace tether::runner
