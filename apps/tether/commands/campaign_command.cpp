@@ -148,10 +148,7 @@ int run_trials(const CampaignOptions& options, const std::stop_token& stop) {
   const auto engine = engine_of(options.engine);
   const int jobs = jobs_of(options.jobs, engine);
   if (!options.shard.empty()) (void)shards::parse_shard(options.shard);
-  // Shards of an engine may run on one machine.
-  const int at_once = engine ? std::max(2, jobs) : jobs;
-  campaign::require_jobs_allowed(campaign, at_once);
-  require_ports(campaign, at_once);
+  require_parallel_allowed(campaign, engine, jobs);
   const std::filesystem::path out =
       options.out.empty() ? std::filesystem::path("out/campaigns") / campaign.name : options.out;
   sim::WorldStore worlds;
@@ -178,7 +175,9 @@ int run_trials(const CampaignOptions& options, const std::stop_token& stop) {
   if (outcome.interrupted) {
     say("tether: interrupted; to continue, type: tether campaign {} --out {} {}\n",
         options.campaign.string(), out.string(),
-        options.shard.empty() ? "--resume" : "--shard " + options.shard);
+        !options.shard.empty() ? "--shard " + options.shard
+        : engine               ? "--resume --engine " + options.engine.engine
+                               : "--resume");
     return exit_code(ErrorCode::kSetup);
   }
   if (!options.shard.empty())

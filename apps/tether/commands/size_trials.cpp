@@ -92,10 +92,7 @@ SizeTrials::SizeTrials(const SizeOptions& options, scenario::Campaign campaign,
 }
 
 std::vector<std::filesystem::path> SizeTrials::checked_files() {
-  // Shards of an engine may run on one machine.
-  const int at_once = engine_ ? std::max(2, jobs_) : jobs_;
-  campaign::require_jobs_allowed(campaign_, at_once);
-  require_ports(campaign_, at_once);
+  require_parallel_allowed(campaign_, engine_, jobs_);
   sim::WorldStore worlds;
   const auto [files, warnings] = runner::files_of_trials(campaign_, find_back_end, worlds);
   if (!warnings.empty())

@@ -1,9 +1,11 @@
 #include "options/engine_option.h"
 
 #include "options/refuse_option.h"
+#include "options/trial_options.h"
 #include "reading/file_kind.h"
 #include "terminal/say.h"
 
+#include <algorithm>
 #include <string>
 
 #include <fmt/format.h>
@@ -31,6 +33,24 @@ std::optional<shards::Engine> engine_of(const EngineOptions& options) {
 
 int jobs_of(const std::optional<int>& given, const std::optional<shards::Engine>& engine) {
   return given.value_or(engine ? static_cast<int>(engine->shards) : 1);
+}
+
+void require_parallel_allowed(const scenario::Campaign& campaign,
+                              const std::optional<shards::Engine>& engine, int jobs) {
+  if (!engine) {
+    campaign::require_jobs_allowed(campaign, jobs);
+    return require_ports(campaign, jobs);
+  }
+  constexpr int kBesideAnother = 2;  // on one machine
+  try {
+    campaign::require_jobs_allowed(campaign, std::max(kBesideAnother, jobs));
+    require_ports(campaign, kBesideAnother);
+  } catch (const Error& error) {
+    refuse_option("--engine",
+                  fmt::format("flies trials beside each other, which these do not allow. Fly "
+                              "without --engine, or one part at a time with --shard. ({})",
+                              error.what()));
+  }
 }
 
 shards::EngineSetup engine_setup(const shards::Engine& engine, int jobs,

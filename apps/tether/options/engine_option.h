@@ -17,6 +17,10 @@ std::optional<shards::Engine> engine_of(const EngineOptions& options);
 /// Of --jobs: what was given, or as many shards as the engine has, or 1.
 int jobs_of(const std::optional<int>& given, const std::optional<shards::Engine>& engine);
 
+/// @throws Error(kUsage) about --engine or --jobs if the trials must not be flown beside others.
+void require_parallel_allowed(const scenario::Campaign& campaign,
+                              const std::optional<shards::Engine>& engine, int jobs);
+
 /// How trials below `campaign` are flown by the engine.
 shards::EngineSetup engine_setup(const shards::Engine& engine, int jobs,
                                  const std::filesystem::path& campaign,

@@ -155,6 +155,9 @@ coordinator::RunOptions run_options(const TrialSpec& spec, const TrialInputs& in
     uav.computer = own.name;
     if (own.target && !own.target->emulator)
       uav.launcher = fmt::format("{}", fmt::join(own.target->launcher, " "));
+    // Another folder may have other files for the program. A board has its own in any case.
+    if (own.target && !own.target->ssh && !own.target->program_folder.empty())
+      uav.launcher += " in " + own.target->program_folder;
     uav.cores = spec.sut_place(i) == SutPlace::kThisMachine ? known_cores() : 0;
     if (inputs.replayed.replays.empty()) continue;
     uav.replay = inputs.replayed.replays[i];

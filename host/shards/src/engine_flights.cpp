@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <ctime>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
@@ -27,6 +28,7 @@ using campaign::TrialPlan;
 using Plans = std::vector<const TrialPlan*>;
 
 constexpr int kMostCalls = 3;
+constexpr std::string_view kCallPrefix = "tether-";
 constexpr Duration kCancelLimit = std::chrono::seconds(30);
 constexpr Duration kMostPause = std::chrono::milliseconds(200);  // before a stop request is seen
 
@@ -127,11 +129,15 @@ class Flights {
         .about("--engine");
   }
 
-  /// Their lists and logs are of no use any more.
+  /// Their lists and logs are of no use any more, nor are those of calls that were interrupted.
   void remove_calls() const {
+    const fs::path shards = setup_.campaign / campaign::kShardsFolder;
     std::error_code ignored;
-    for (const fs::path& folder : calls_) fs::remove_all(folder, ignored);
-    fs::remove(setup_.campaign / campaign::kShardsFolder, ignored);  // unless it has something else
+    std::vector<fs::path> calls;
+    for (const auto& entry : fs::directory_iterator(shards, ignored))
+      if (entry.path().filename().string().starts_with(kCallPrefix)) calls.push_back(entry.path());
+    for (const fs::path& call : calls) fs::remove_all(call, ignored);
+    fs::remove(shards, ignored);  // unless it has something else
   }
 
   void fly() {

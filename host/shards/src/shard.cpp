@@ -1,15 +1,14 @@
 #include <cerrno>
 #include <charconv>
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <unistd.h>
 
 #include <tether/base/error.h>
 #include <tether/base/system_reason.h>
 #include <tether/campaign/campaign_folder.h>
-#include <tether/os/file_descriptor.h>
-#include <tether/os/pipe.h>
+#include <tether/os/temporary_folder.h>
 #include <tether/os/text_file.h>
 #include <tether/shards/shard.h>
 
@@ -81,14 +80,13 @@ void require_same_files(const std::map<std::string, std::string>& digests) {
 
 void require_same_machine(const fs::path& campaign, const std::string& machine) {
   const fs::path file = campaign / campaign::kShardsFolder / "machine";
-  const os::FileDescriptor own(::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
-  if (!own && errno != EEXIST)
-    throw Error(ErrorCode::kSetup, {file.string()}, "cannot be made: " + reason_of(errno) + ".")
-        .about(file.string());
-  if (own) {
-    if (os::write_all(own, machine)) return;
-    throw Error(ErrorCode::kSetup, {file.string()}, "cannot be written: " + reason_of(errno) + ".")
-        .about(file.string());
+  {
+    // With its text from the start, or not at all.
+    const os::TemporaryFolder own("machine-", file.parent_path());
+    os::write_file_atomically(own / "machine", machine);
+    if (::link((own / "machine").c_str(), file.c_str()) != 0 && errno != EEXIST)
+      throw Error(ErrorCode::kSetup, {file.string()}, "cannot be made: " + reason_of(errno) + ".")
+          .about(file.string());
   }
   const std::string first = os::read_whole(file);
   if (first == machine) return;

@@ -158,6 +158,8 @@ TEST_F(MissReasons, AreSpeedIfComputingAloneTakesLongerThanALimit) {
               testing::AllOf(StartsWith("Not fast enough in this flight: "),
                              HasSubstr("Computing an image takes 200 ms, longer than “quick” "
                                        "allows.")));
+  trials(board)[0].clauses[0].limit = 9.0;
+  EXPECT_EQ(ruling(board), Ruling::kGoalMissed) << "sensors alone take 10 ms";
   trials(board)[0].clauses[0].limit = 205.0;
   EXPECT_EQ(ruling(board), Ruling::kGoalMissed) << "sensors and waiting take the rest";
   trials(board)[0].clauses[0].limit = 15.0;
