@@ -54,14 +54,15 @@ int cores_of(std::span<const TrialPlan* const> plans) {
   return most;
 }
 
-/// The last words of the engine, else of a shard, whose log is beside that of the engine.
+/// The last words of a shard, else of the engine, which may only have said that it began.
 std::string last_words(const fs::path& folder) {
   std::vector<fs::path> logs;
   std::error_code ignored;
   for (const auto& entry : fs::directory_iterator(folder, ignored))
     if (entry.path().extension() == ".log") logs.push_back(entry.path());
   std::ranges::sort(logs);
-  std::ranges::stable_partition(logs, [](const fs::path& log) { return log.stem() != "engine"; });
+  std::stable_partition(logs.begin(), logs.end(),
+                        [](const fs::path& log) { return log.stem() != "engine"; });
   for (const fs::path& log : logs)
     if (const std::string line = os::last_line(os::read_whole(log)); !line.empty())
       return fmt::format("{}: {}", log.filename().string(), line);

@@ -39,7 +39,7 @@ struct TrialList {
 };
 std::string to_json(const TrialList& list);
 /// The inverse. @throws Error(kBadFile) at `file` for other texts.
-TrialList parse_trial_list(std::string_view json, const std::filesystem::path& file);
+TrialList parse_trial_list(std::string_view text, const std::filesystem::path& file);
 
 /// The digest of each file, by its path. @throws Error(kBadFile) if one cannot be read.
 std::map<std::string, std::string> digests_of(const std::vector<std::filesystem::path>& files);
