@@ -32,6 +32,11 @@ bool holds_anything(const fs::path& folder) {
       .about(folder.string());
 }
 
+/// Otherwise the trial is flown again.
+bool counts(const TrialResult& result) {
+  return result.end != kEndSetupFailed && result.end != kEndInterrupted;
+}
+
 std::set<std::string> names_in(const fs::path& folder) {
   std::set<std::string> names;
   std::error_code none;
@@ -186,13 +191,13 @@ void CampaignFolder::sort_trials(const scenario::Campaign& campaign) {
   }
 }
 
-bool has_result(const fs::path& trial) try {
+std::optional<TrialResult> result_in(const fs::path& trial) try {
   std::error_code ignored;
-  if (!fs::exists(trial / kResultFile, ignored)) return false;
-  const TrialResult result = read_result(trial);
-  return result.end != kEndSetupFailed && result.end != kEndInterrupted;
+  if (!fs::exists(trial / kResultFile, ignored)) return std::nullopt;
+  TrialResult result = read_result(trial);
+  return counts(result) ? std::optional(std::move(result)) : std::nullopt;
 } catch (const Error&) {
-  return false;
+  return std::nullopt;
 }
 
 bool CampaignFolder::has_usable_result(const TrialPlan& plan) {
@@ -204,7 +209,7 @@ bool CampaignFolder::has_usable_result(const TrialPlan& plan) {
                                result.condition == plan.condition->name && result.seed == plan.seed;
     if (!is_this_trial)
       warnings_.push_back(plan.folder.string() + ": is the result of another trial");
-    return is_this_trial && result.end != kEndSetupFailed && result.end != kEndInterrupted;
+    return is_this_trial && counts(result);
   } catch (const Error& error) {
     warnings_.emplace_back(error.what());
     return false;

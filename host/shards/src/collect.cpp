@@ -1,6 +1,3 @@
-#include <algorithm>
-#include <optional>
-
 #include <fmt/format.h>
 
 #include <tether/base/error.h>

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <ctime>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -11,11 +12,9 @@
 #include <tether/campaign/campaign_folder.h>
 #include <tether/os/child_process.h>
 #include <tether/os/clock.h>
-#include <tether/os/interrupt.h>
 #include <tether/os/shell_word.h>
 #include <tether/os/text_file.h>
 #include <tether/shards/engine_flights.h>
-#include <tether/shards/hand_in.h>
 
 // A call of the engine: lists of the trials that have no result, one for each shard, a script that
 // flies one of them, and the engine's command, which ends when all shards have ended. Meanwhile
@@ -126,7 +125,7 @@ class Flights {
     throw Error(ErrorCode::kSetup, {setup_.campaign.string()},
                 fmt::format("{} of {} have no result, because their shards ended ({}). Correct "
                             "that, and continue with --resume.",
-                            lost, counted(total_, "trial"), last_words(calls_.back())))
+                            lost, counted(total_, "trial"), last_words(folder_)))
         .about("--engine");
   }
 
@@ -142,22 +141,21 @@ class Flights {
   }
 
   void fly() {
-    const std::string name =
-        "tether-" + os::digest_of(fmt::format("{} {} {} {}", setup_.campaign.string(),
-                                              os::utc_now(), ::getpid(), missing_.size()));
-    const fs::path& folder =
-        calls_.emplace_back(fs::absolute(setup_.campaign) / campaign::kShardsFolder / name);
+    const std::string name = std::string(kCallPrefix) +
+                             os::digest_of(fmt::format("{} {} {} {}", setup_.campaign.string(),
+                                                       os::utc_now(), ::getpid(), missing_.size()));
+    folder_ = fs::absolute(setup_.campaign) / campaign::kShardsFolder / name;
     const EngineCall call{.name = name,
-                          .folder = folder,
-                          .script = folder / "shard.sh",
+                          .folder = folder_,
+                          .script = folder_ / "shard.sh",
                           .shards = std::min(setup_.shards, missing_.size()),
                           .cores = cores_};
     write_parts(call);
-    os::write_file_atomically(folder / "input", filled(setup_.engine.input, setup_.engine, call));
+    os::write_file_atomically(folder_ / "input", filled(setup_.engine.input, setup_.engine, call));
     os::ChildProcess engine({.arguments = filled(setup_.engine.command, setup_.engine, call),
                              .environment = {},
-                             .log = folder / "engine.log",
-                             .input = folder / "input"});
+                             .log = folder_ / "engine.log",
+                             .input = folder_ / "input"});
     Duration next_look = now() + setup_.look_period;
     while (!engine.wait(std::min(setup_.look_period, kMostPause))) {
       if (stop_.stop_requested()) return cancel(engine, call);
@@ -200,14 +198,14 @@ class Flights {
   void look() {
     Plans still;
     for (const TrialPlan* plan : missing_) {
-      if (stop_.stop_requested() || !campaign::has_result(plan->folder)) {
+      const auto result = stop_.stop_requested() ? std::nullopt : campaign::result_in(plan->folder);
+      if (!result) {
         still.push_back(plan);
         continue;
       }
-      const campaign::TrialResult result = campaign::read_result(plan->folder);
       ++outcome_.ran;
-      if (result.outcome == campaign::Outcome::kFailed) ++outcome_.failed;
-      report(plan, &result);
+      if (result->outcome == campaign::Outcome::kFailed) ++outcome_.failed;
+      report(plan, &*result);
     }
     missing_ = std::move(still);
   }
@@ -242,7 +240,7 @@ class Flights {
   Plans missing_;
   std::size_t done_before_, total_;
   int cores_;
-  std::vector<fs::path> calls_;  ///< their folders
+  fs::path folder_;  ///< of the newest call
   campaign::CampaignOutcome outcome_;
 };
 

@@ -61,16 +61,13 @@ bool is_one_board_for_all(const ConditionVerdict& condition) {
 
 std::string stage_advice(const Advice& advice, const ConditionVerdict& lead) {
   const bool shares = !lead.pace->shared_board.empty() || lead.pace->shares_real_board;
-  const bool waits = std::ranges::any_of(lead.pace->speed.programs, [](const auto& program) {
-    return program.clock.counts_waiting();
-  });
   return fmt::format(
       "Speed up “{}” first. {} up to {} per image, and the camera has one every {}: it is {} × too "
       "slow to read them all.",
       advice.subject,
-      shares  ? "Computing and waiting for cores take"
-      : waits ? "Computing and whatever the program waits for take"
-              : "Computing takes",
+      shares                              ? "Computing and waiting for cores take"
+      : lead.pace->speed.measures_waits() ? "Computing and whatever the program waits for take"
+                                          : "Computing takes",
       short_ms(lead.pace->p95_s), short_ms(1.0 / *lead.pace->offered_hz),
       fixed(1.0 / *lead.pace->headroom(), 1));
 }

@@ -158,18 +158,11 @@ std::string known_cause(const campaign::TrialResult& flight, const std::optional
   return "";
 }
 
-/// Whether times between calls contain what a program waits in between, which no computer shortens.
-bool measures_waits(const Pace& pace) {
-  return std::ranges::any_of(pace.speed.programs, [](const Speed::Program& program) {
-    return program.clock.counts_waiting();
-  });
-}
-
 /// A missed limit on a time that contains the computing of an image, which alone takes longer;
 /// empty: there is none.
 std::string limit_below_computing(const campaign::TrialResult& flight,
                                   const std::optional<Pace>& pace) {
-  if (!pace || pace->camera.empty() || measures_waits(*pace)) return "";
+  if (!pace || pace->camera.empty() || pace->speed.measures_waits()) return "";
   for (const judge::ClauseVerdict& clause : flight.clauses) {
     if (clause.met || clause.quantiles.empty() || !clause.limit) continue;
     const double unit_s = clause.unit == "ms" ? 1e-3 : 1.0;

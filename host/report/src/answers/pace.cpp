@@ -163,6 +163,11 @@ bool Speed::is_instant() const {
          });
 }
 
+bool Speed::measures_waits() const {
+  return std::ranges::any_of(programs,
+                             [](const Program& program) { return program.clock.counts_waiting(); });
+}
+
 bool Speed::stretches_unseen_waits() const {
   return std::ranges::any_of(programs, [](const Program& program) {
     return program.concurrent && program.clock.counts_waiting() && program.clock.is_scaled();

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -47,9 +48,12 @@ CampaignManifest read_manifest(const std::filesystem::path& folder);
 /// What processes and machines that fly parts of the campaign leave beside its trials.
 inline constexpr std::string_view kShardsFolder = ".shards";
 
-/// Whether the folder of a trial has a result that counts: not that of a failed set-up, or of a
-/// flight that was interrupted.
-bool has_result(const std::filesystem::path& trial);
+/// The result in the folder of a trial, if it counts: not that of a failed set-up, or of a flight
+/// that was interrupted. None, too, if it is damaged.
+std::optional<TrialResult> result_in(const std::filesystem::path& trial);
+inline bool has_result(const std::filesystem::path& trial) {
+  return result_in(trial).has_value();
+}
 
 enum class OpenMode {
   kFresh,    ///< the folder must not contain results yet

@@ -56,6 +56,9 @@ struct Speed {
   bool is_scripted() const;
   /// … to next to nothing, as on an infinitely fast computer: at most 0.01 ms for each phase.
   bool is_instant() const;
+  /// Whether times between calls contain what a program waits in between, which no computer
+  /// shortens.
+  bool measures_waits() const;
   /// Whether a factor makes more of what a program waits between its calls, and nobody measures how
   /// much that is: of a concurrent program, some threads may wait while others compute.
   bool stretches_unseen_waits() const;
