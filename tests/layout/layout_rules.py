@@ -242,11 +242,13 @@ def check_links(texts, exists):
 
 
 def check_decisions(texts):
-    """Each ADR has its parts and a line in the index."""
+    """Each ADR has its parts, or names the one that supersedes it, and has a line in the index."""
     parts = ("Status:", "## Context", "## Decision", "## Consequences", "## Alternatives")
+    superseded = re.compile(r"^Status: superseded by \[\d{4}\]\(\d{4}-", re.M)
     index = texts.get("docs/adr/README.md", "")
     adrs = {path: text for path, text in texts.items() if re.match(r"docs/adr/\d.*\.md$", path)}
-    return ([f"{path}:1: no '{part}'" for path, text in adrs.items() for part in parts if part not in text] +
+    return ([f"{path}:1: no '{part}'" for path, text in adrs.items() if not superseded.search(text)
+             for part in parts if part not in text] +
             [f"{path}:1: not in docs/adr/README.md" for path in adrs if f"({pathlib.PurePath(path).name})" not in index])
 
 

@@ -113,6 +113,10 @@ class Planted(unittest.TestCase):
         links = {"docs/a.md": "[a](b.md#x) [c](https://d) <img src=\"e.png\">"}
         self.assertEqual(check_links(links, lambda path: path.as_posix() == "docs/b.md"), ["docs/a.md:1: no file e.png"])
         self.assertEqual(len(check_decisions({"docs/adr/0001-a.md": "Status: a ## Context ## Decision ## Consequences"})), 2)
+        self.assertEqual(len(check_decisions({"docs/adr/0001-a.md": "Status: superseded by [0002](0002-b.md), because",
+                                              "docs/adr/README.md": "[](0001-a.md)"})), 0)
+        self.assertEqual(len(check_decisions({"docs/adr/0001-a.md": "Status: superseded",
+                                              "docs/adr/README.md": "[](0001-a.md)"})), 4)
 
 
 class Repository(unittest.TestCase):
