@@ -156,16 +156,9 @@ class TimedRecorder final : public record::Recorder {
   TimedRecorder(const std::filesystem::path& file, Account& account)
       : inner_(record::make_mcap_recorder(file)), account_(account) {}
   void write(const record::Header& m) override { inner_->write(m); }
-  void write(SimTime at, const record::Interaction& m) override { put(at, m); }
-  void write(SimTime at, const record::CommandEffect& m) override { put(at, m); }
-  void write(SimTime at, const record::GroundTruth& m) override { put(at, m); }
-  void write(SimTime at, const record::Annotation& m) override { put(at, m); }
-  void write(SimTime at, const record::Stop& m) override { put(at, m); }
-  void write(SimTime at, const record::Contact& m) override { put(at, m); }
-  void write(SimTime at, const record::Battery& m) override { put(at, m); }
-  void write(SimTime at, const record::RadioMessage& m) override { put(at, m); }
-  void write(SimTime at, const record::Image& m) override { put(at, m); }
-  void write(SimTime at, const record::RawImage& m) override { put(at, m); }
+  void write(SimTime at, const record::Message& m) override {
+    account_.measure([&] { inner_->write(at, m); });
+  }
   void flush() override {
     account_.measure([&] { inner_->flush(); });
   }
@@ -174,10 +167,6 @@ class TimedRecorder final : public record::Recorder {
   }
 
  private:
-  template <class M>
-  void put(SimTime at, const M& m) {
-    account_.measure([&] { inner_->write(at, m); });
-  }
   std::unique_ptr<record::Recorder> inner_;
   Account& account_;
 };

@@ -187,19 +187,11 @@ class CoordinatorHost {
       std::filesystem::remove_all(folder_);
     }
     void write(const record::Header& m) override { file_->write(m); }
-    void write(SimTime at, const record::Interaction& m) override {
-      if (m.kind == record::kSensor) simulator_->make_image_ready();
+    void write(SimTime at, const record::Message& m) override {
+      const auto* interaction = std::get_if<record::Interaction>(&m);
+      if (interaction && interaction->kind == record::kSensor) simulator_->make_image_ready();
       file_->write(at, m);
     }
-    void write(SimTime at, const record::CommandEffect& m) override { file_->write(at, m); }
-    void write(SimTime at, const record::GroundTruth& m) override { file_->write(at, m); }
-    void write(SimTime at, const record::Annotation& m) override { file_->write(at, m); }
-    void write(SimTime at, const record::Stop& m) override { file_->write(at, m); }
-    void write(SimTime at, const record::Contact& m) override { file_->write(at, m); }
-    void write(SimTime at, const record::Battery& m) override { file_->write(at, m); }
-    void write(SimTime at, const record::RadioMessage& m) override { file_->write(at, m); }
-    void write(SimTime at, const record::Image& m) override { file_->write(at, m); }
-    void write(SimTime at, const record::RawImage& m) override { file_->write(at, m); }
     void flush() override { file_->flush(); }
     void write(const record::Footer& m) override { file_->write(m); }
 

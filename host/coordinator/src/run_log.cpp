@@ -164,7 +164,7 @@ void RunLog::settle() {
 
 // Inserts the message before those of other SUTs that have a greater key. Those of one SUT stay in
 // their order: its key does not decrease.
-void RunLog::put(SimTime st, Message message) {
+void RunLog::put(SimTime st, record::Message message) {
   if (!collects_) return write(st, message);
   Row& row = rows_.at(std::visit([](const auto& m) { return m.uav; }, message));
   if (const auto* interaction = std::get_if<record::Interaction>(&message))
@@ -197,14 +197,14 @@ bool RunLog::may_precede(const Collected& later, const Collected& earlier) {
   return !was_held && !was_awaited;
 }
 
-void RunLog::write(SimTime st, Message& message) {
+void RunLog::write(SimTime st, record::Message& message) {
   if (repeatable_) {
     if (auto* interaction = std::get_if<record::Interaction>(&message)) {
       interaction->wall_at_arrival = interaction->wall_at_release = {};
       interaction->previous_link_time.reset();
     }
   }
-  guarded([&] { std::visit([&](const auto& m) { recorder_->write(st, m); }, message); });
+  guarded([&] { recorder_->write(st, message); });
 }
 
 }  // namespace tether::coordinator

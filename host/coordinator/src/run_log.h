@@ -8,7 +8,6 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include <tether/base/error.h>
@@ -65,13 +64,10 @@ class RunLog {
   void count_image() { ++images_; }
 
  private:
-  using Message = std::variant<record::Interaction, record::CommandEffect, record::GroundTruth,
-                               record::Annotation, record::Stop, record::Contact, record::Battery,
-                               record::Image, record::RawImage>;
   struct Collected {
     SimTime st;
     std::pair<ExecTime, std::size_t> key;
-    Message message;
+    record::Message message;
   };
   struct Row {
     std::size_t index;
@@ -79,8 +75,8 @@ class RunLog {
   };
 
   void take_clearance(SimTime st, const std::string& uav, const sim::Clearance& clearance);
-  void put(SimTime st, Message message);
-  void write(SimTime st, Message& message);
+  void put(SimTime st, record::Message message);
+  void write(SimTime st, record::Message& message);
   static bool may_precede(const Collected& later, const Collected& earlier);
 
   record::Recorder* recorder_;

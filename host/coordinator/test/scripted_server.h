@@ -118,16 +118,10 @@ class ScriptedServer final : public link::Server {
 class MemoryRecorder final : public record::Recorder {
  public:
   void write(const record::Header& m) override { keep(header, m); }
-  void write(SimTime, const record::Interaction& m) override { add(interactions, m); }
-  void write(SimTime, const record::CommandEffect& m) override { add(commands, m); }
-  void write(SimTime, const record::GroundTruth& m) override { add(ground_truth, m); }
-  void write(SimTime, const record::Annotation& m) override { add(annotations, m); }
-  void write(SimTime, const record::Stop& m) override { add(stops, m); }
-  void write(SimTime at, const record::Contact& m) override { add(contacts, {at, m}); }
-  void write(SimTime, const record::Battery& m) override { add(batteries, m); }
-  void write(SimTime, const record::RadioMessage& m) override { add(radio, m); }
-  void write(SimTime, const record::Image& m) override { add(images, m); }
-  void write(SimTime, const record::RawImage& m) override { add(raw_images, m); }
+  void write(SimTime at, const record::Message& message) override {
+    take_room();
+    std::visit([&](const auto& m) { add(at, m); }, message);
+  }
   void flush() override {}
   void write(const record::Footer& m) override { keep(footer, m); }
 
@@ -156,11 +150,16 @@ class MemoryRecorder final : public record::Recorder {
     take_room();
     place = message;
   }
-  template <class Message>
-  void add(std::vector<Message>& messages, const std::type_identity_t<Message>& message) {
-    take_room();
-    messages.push_back(message);
-  }
+  void add(SimTime, const record::Interaction& m) { interactions.push_back(m); }
+  void add(SimTime, const record::CommandEffect& m) { commands.push_back(m); }
+  void add(SimTime, const record::GroundTruth& m) { ground_truth.push_back(m); }
+  void add(SimTime, const record::Annotation& m) { annotations.push_back(m); }
+  void add(SimTime, const record::Stop& m) { stops.push_back(m); }
+  void add(SimTime, const record::Battery& m) { batteries.push_back(m); }
+  void add(SimTime, const record::RadioMessage& m) { radio.push_back(m); }
+  void add(SimTime, const record::Image& m) { images.push_back(m); }
+  void add(SimTime, const record::RawImage& m) { raw_images.push_back(m); }
+  void add(SimTime at, const record::Contact& m) { contacts.emplace_back(at, m); }
 };
 
 }  // namespace tether::coordinator

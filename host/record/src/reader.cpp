@@ -3,6 +3,7 @@
 #include "json/json_metadata.h"
 #include "json/schemas.h"
 #include "mcap/mcap_reader.h"
+#include "messages_of.h"
 
 #include <algorithm>
 #include <limits>
@@ -84,33 +85,26 @@ class RecordBuilder final : public McapVisitor {
   }
 
   Appender appender(std::string_view schema) const {
-    if (schema == kInteractionSchema.name)
-      return &RecordBuilder::append<&Record::interactions, interaction_from_json>;
+    if (schema == kInteractionSchema.name) return &RecordBuilder::append<interaction_from_json>;
     if (schema == kCommandEffectSchema.name)
-      return &RecordBuilder::append<&Record::commands, command_effect_from_json>;
-    if (schema == kGroundTruthSchema.name)
-      return &RecordBuilder::append<&Record::ground_truth, ground_truth_from_json>;
-    if (schema == kAnnotationSchema.name)
-      return &RecordBuilder::append<&Record::annotations, annotation_from_json>;
-    if (schema == kStopSchema.name) return &RecordBuilder::append<&Record::stops, stop_from_json>;
-    if (schema == kContactSchema.name)
-      return &RecordBuilder::append<&Record::contacts, contact_from_json>;
-    if (schema == kBatterySchema.name)
-      return &RecordBuilder::append<&Record::batteries, battery_from_json>;
-    if (schema == kRadioMessageSchema.name)
-      return &RecordBuilder::append<&Record::radio, radio_message_from_json>;
+      return &RecordBuilder::append<command_effect_from_json>;
+    if (schema == kGroundTruthSchema.name) return &RecordBuilder::append<ground_truth_from_json>;
+    if (schema == kAnnotationSchema.name) return &RecordBuilder::append<annotation_from_json>;
+    if (schema == kStopSchema.name) return &RecordBuilder::append<stop_from_json>;
+    if (schema == kContactSchema.name) return &RecordBuilder::append<contact_from_json>;
+    if (schema == kBatterySchema.name) return &RecordBuilder::append<battery_from_json>;
+    if (schema == kRadioMessageSchema.name) return &RecordBuilder::append<radio_message_from_json>;
     if (schema == kCompressedImageSchema.name)
-      return options_.images ? &RecordBuilder::append<&Record::images, image_from_json>
-                             : &RecordBuilder::skip;
+      return options_.images ? &RecordBuilder::append<image_from_json> : &RecordBuilder::skip;
     if (schema == kRawImageSchema.name)
-      return options_.images ? &RecordBuilder::append<&Record::raw_images, raw_image_from_json>
-                             : &RecordBuilder::skip;
+      return options_.images ? &RecordBuilder::append<raw_image_from_json> : &RecordBuilder::skip;
     return nullptr;
   }
 
-  template <auto messages, auto parse>
+  template <auto parse>
   void append(SimTime at, std::string_view json) {
-    (record_.*messages).push_back({at, order_, parse(json)});
+    using Kind = decltype(parse(json));
+    messages_of<Kind>(record_).push_back({at, order_, parse(json)});
   }
   void skip(SimTime, std::string_view) {}
 

@@ -77,40 +77,8 @@ class McapRecorder final : public Recorder {
     mcap_.add_metadata(kHeaderName, to_metadata(header));
   }
 
-  void write(SimTime at, const Interaction& message) override {
-    write_json(interactions_.of("/interactions", {}), at, message);
-  }
-  void write(SimTime at, const CommandEffect& message) override {
-    write_json(commands_.of("/commands", message.uav), at, message);
-  }
-  void write(SimTime at, const GroundTruth& message) override {
-    write_json(ground_truth_.of("/ground_truth", message.uav), at, message);
-    append_frame_transform(begin(transforms_.of("/tf", {}), at), message);
-    mcap_.end_message();
-  }
-  void write(SimTime at, const Annotation& message) override {
-    write_json(annotations_.of("/task", message.uav), at, message);
-  }
-  void write(SimTime at, const Stop& message) override {
-    write_json(stops_.of("/stops", message.uav), at, message);
-  }
-  void write(SimTime at, const Contact& message) override {
-    write_json(contacts_.of("/contacts", message.uav), at, message);
-  }
-  void write(SimTime at, const Battery& message) override {
-    write_json(batteries_.of("/battery", message.uav), at, message);
-  }
-  void write(SimTime at, const RadioMessage& message) override {
-    write_json(radio_.of("/radio", {}), at, message);
-  }
-  void write(SimTime at, const Image& message) override {
-    write_json(images_.of("/images", message.uav, message.sensor), at, message);
-  }
-  void write(SimTime at, const RawImage& message) override {
-    const bool is_depth = std::holds_alternative<std::vector<float>>(message.pixels);
-    Channels& channels = is_depth ? depths_ : labels_;
-    write_json(channels.of(is_depth ? "/depth" : "/labels", message.uav, message.sensor), at,
-               message);
+  void write(SimTime at, const Message& message) override {
+    std::visit([&](const auto& one) { put(at, one); }, message);
   }
 
   void flush() override { mcap_.flush(); }
@@ -124,11 +92,47 @@ class McapRecorder final : public Recorder {
   }
 
  private:
+  void put(SimTime at, const Interaction& message) {
+    write_json(interactions_.of("/interactions", {}), at, message);
+  }
+  void put(SimTime at, const CommandEffect& message) {
+    write_json(commands_.of("/commands", message.uav), at, message);
+  }
+  void put(SimTime at, const GroundTruth& message) {
+    write_json(ground_truth_.of("/ground_truth", message.uav), at, message);
+    append_frame_transform(begin(transforms_.of("/tf", {}), at), message);
+    mcap_.end_message();
+  }
+  void put(SimTime at, const Annotation& message) {
+    write_json(annotations_.of("/task", message.uav), at, message);
+  }
+  void put(SimTime at, const Stop& message) {
+    write_json(stops_.of("/stops", message.uav), at, message);
+  }
+  void put(SimTime at, const Contact& message) {
+    write_json(contacts_.of("/contacts", message.uav), at, message);
+  }
+  void put(SimTime at, const Battery& message) {
+    write_json(batteries_.of("/battery", message.uav), at, message);
+  }
+  void put(SimTime at, const RadioMessage& message) {
+    write_json(radio_.of("/radio", {}), at, message);
+  }
+  void put(SimTime at, const Image& message) {
+    write_json(images_.of("/images", message.uav, message.sensor), at, message);
+  }
+  void put(SimTime at, const RawImage& message) {
+    const bool is_depth = std::holds_alternative<std::vector<float>>(message.pixels);
+    Channels& channels = is_depth ? depths_ : labels_;
+    write_json(channels.of(is_depth ? "/depth" : "/labels", message.uav, message.sensor), at,
+               message);
+  }
+
   std::string& begin(std::uint16_t channel, SimTime at) {
     return mcap_.begin_message(channel, static_cast<std::uint64_t>(to_ns(at)));
   }
-  template <class Message>
-  void write_json(std::uint16_t channel, SimTime at, const Message& message) {
+  template <class Kind>
+  void write_json(std::uint16_t channel, SimTime at, const Kind& message) {
     append_json(begin(channel, at), message);
     mcap_.end_message();
   }

@@ -23,14 +23,13 @@
 #include <tether/os/machine.h>
 #include <tether/os/program.h>
 #include <tether/os/text_file.h>
-#include <tether/record/reader.h>
 #include <tether/runner/trial.h>
 #include <tether/runner/trial_folder.h>
 #include <tether/sim_sdf/world_store.h>
 
 /// One trial: checks options and files, claims the folder, starts the board and the simulator,
-/// conducts the run (TrialRun), and writes the result, which is evaluated from the record. Failures
-/// after the checks are results, too.
+/// conducts the run (TrialRun), and writes the result, which is evaluated from its messages.
+/// Failures after the checks are results, too.
 namespace tether::runner {
 
 namespace {
@@ -71,7 +70,8 @@ campaign::TrialResult setup_failure(const TrialSpec& spec, const std::string& re
 }
 
 /// Puts in what the record of a repeatable run leaves out.
-void complete(record::Record& record, const Conducted& conducted) {
+void complete(Conducted& conducted) {
+  record::Record& record = conducted.record;
   record.header.target = conducted.target;
   if (!record.footer) return;
   record.footer->wall = conducted.report.wall;
@@ -87,22 +87,20 @@ campaign::TrialResult make_result(const TrialSpec& spec, const record::Record& r
   return result;
 }
 
-/// The result of a run whose record could not be written to its end, from what there is of it. The
-/// trial counts as not set up, so that a campaign repeats it.
-campaign::TrialResult unrecorded(const TrialSpec& spec, const coordinator::RunReport& report) try {
-  const record::Record record = record::read_record(spec.folder / kRecordFile);
-  auto result = make_result(spec, record, {});
-  const audit::Verdict verdict = audit::audit(record);
+/// The result of a run whose record could not be written to its end, from what happened until then.
+/// The trial counts as not set up, so that a campaign repeats it.
+campaign::TrialResult unrecorded(const TrialSpec& spec, const Conducted& conducted) {
+  const coordinator::RunReport& report = conducted.report;
+  auto result = make_result(spec, conducted.record, {});
+  const audit::Verdict verdict = audit::audit(conducted.record);
   result.audit = {verdict.passed(), audit::to_line(verdict)};
   result.end = campaign::kEndSetupFailed;
   result.this_run.wall = report.wall;
   campaign::invalidate(
-      result, fmt::format("{}; the record is kept up to ST {:.3f} s, with {} interactions",
+      result, fmt::format("{}; the run reached ST {:.3f} s, with {} interactions, and the record "
+                          "has those before the error",
                           report.reason, to_seconds(verdict.reached), verdict.interactions));
   return result;
-} catch (const Error& e) {
-  if (e.code() != ErrorCode::kBadFile) throw;
-  return setup_failure(spec, report.reason, false);  // not even a header
 }
 
 void write_margins(const TrialSpec& spec, const campaign::TrialResult& result) {
@@ -113,16 +111,16 @@ void write_margins(const TrialSpec& spec, const campaign::TrialResult& result) {
   if (!margins.empty()) record::write_margins(spec.folder / kMarginsFile, std::move(margins));
 }
 
-/// The result of a run, from its record. The record stays if there is too little memory to read it.
-campaign::TrialResult evaluate(const TrialSpec& spec, const Conducted& conducted) try {
+/// The result of a run, from its messages. The record stays if there is too little memory for it.
+campaign::TrialResult evaluate(const TrialSpec& spec, Conducted& conducted) try {
   const coordinator::RunReport& report = conducted.report;
   const std::filesystem::path file = spec.folder / kRecordFile;
   if (!report.began) return setup_failure(spec, report.reason, report.end == RunEnd::kInterrupted);
   if (!std::filesystem::exists(file))
     throw Error(ErrorCode::kSetup, {file.string()}, "the record was removed during the run");
-  if (report.end == RunEnd::kRecordFailed) return unrecorded(spec, report);
-  record::Record record = record::read_record(file);
-  complete(record, conducted);
+  if (report.end == RunEnd::kRecordFailed) return unrecorded(spec, conducted);
+  complete(conducted);
+  const record::Record& record = conducted.record;
   auto result = make_result(spec, record, task_ends(report));
   const audit::Verdict verdict = audit::audit(record);
   result.audit = {verdict.passed(), audit::to_line(verdict)};
@@ -178,8 +176,7 @@ campaign::TrialResult fly(const TrialSpec& spec, const StartSimulator& start,
                        "is simulated by the embedded simulator only; this flight has no battery"});
   warnings.pass_on();
   try {
-    const Conducted conducted =
-        TrialRun(spec, inputs, *simulator, boards, observer, stop).conduct();
+    Conducted conducted = TrialRun(spec, inputs, *simulator, boards, observer, stop).conduct();
     auto result = evaluate(spec, conducted);
     for (const MachineReadings& machine : conducted.others)
       result.this_run.more_targets.push_back(report_of(machine.info, machine.after, result.reason));

@@ -290,8 +290,9 @@ TrialRun::TrialRun(const TrialSpec& spec, const TrialInputs& inputs, RunningSimu
       stop_(std::move(stop)),
       token_(token_of_run()),
       target_(first_target(spec, boards)),
-      recorder_(record::make_mcap_recorder(spec.folder / kRecordFile)),
-      coordinator_(simulator.get(), *recorder_, run_options(spec, inputs, token_, target_),
+      file_(record::make_mcap_recorder(spec.folder / kRecordFile)),
+      recorder_({file_.get(), &memory_}),
+      coordinator_(simulator.get(), recorder_, run_options(spec, inputs, token_, target_),
                    host_now),
       server_((allow_connections(spec.scenario.uavs.size()), listen(spec, boards))),
       sut_run_{sut_address(spec, nullptr, *server_),
@@ -319,8 +320,8 @@ Conducted TrialRun::conduct() {
     loads.push_back(machine->load(starts_all_programs(spec_)));
     if (auto doubt = doubt_of(loads.back())) doubted.push_back(std::move(*doubt));
   }
-  return {std::move(end.report), std::move(notes_), std::move(doubted), std::move(loads), target_,
-          target_after_,         std::move(others_)};
+  return {std::move(end.report), memory_.take(), std::move(notes_), std::move(doubted),
+          std::move(loads),      target_,        target_after_,     std::move(others_)};
 }
 
 TrialEnd TrialRun::fly(std::optional<MachineWatch>& machine) {

@@ -18,7 +18,7 @@
 #include <tether/board/board.h>
 #include <tether/coordinator/coordinator.h>
 #include <tether/os/temporary_folder.h>
-#include <tether/record/writer.h>
+#include <tether/record/in_memory.h>
 #include <tether/runner/back_end.h>
 #include <tether/runner/trial.h>
 
@@ -45,9 +45,10 @@ struct MachineReadings {
   record::Readings after;
 };
 
-/// A run's report, and notes about it.
+/// A run's report, its messages, and notes about it.
 struct Conducted {
   coordinator::RunReport report;
+  record::Record record;  ///< as in the file
   std::vector<std::string> notes;
   std::vector<campaign::Doubt> doubts;
   std::vector<campaign::MachineLoad> loads;
@@ -87,7 +88,9 @@ class TrialRun {
   std::stop_token stop_;
   std::string token_;
   std::optional<record::TargetInfo> target_;  // before the run
-  std::unique_ptr<record::Recorder> recorder_;
+  std::unique_ptr<record::Recorder> file_;
+  record::RecordInMemory memory_;
+  record::FanOut recorder_;
   coordinator::Coordinator coordinator_;
   std::unique_ptr<link::Server> server_;
   std::optional<os::TemporaryFolder> groups_folder_;  // for groups on this machine

@@ -22,13 +22,14 @@ class Folder : public RunTest {
     for (const std::string& part : named) EXPECT_THAT(output.err, HasSubstr(part));
     EXPECT_TRUE(wait_until_gone(mark_));
   }
-  /// The record is there as far as it went, and the result and `tether audit` give its extent.
+  /// The record is there as far as it went, and `tether audit` gives its extent. The result has the
+  /// extent of the run.
   void expect_truncated(const nlohmann::json& result, const std::filesystem::path& out) {
     const record::Record record = read_record(out);
     EXPECT_FALSE(record.footer);
     EXPECT_GT(record.interactions.size(), 0u);
-    EXPECT_EQ(result["sync"]["interactions"], record.interactions.size());
-    EXPECT_EQ(result["sync"]["st_at_end_s"], to_seconds(record::last_time(record)));
+    EXPECT_GE(result["sync"]["interactions"], record.interactions.size());
+    EXPECT_GE(result["sync"]["st_at_end_s"], to_seconds(record::last_time(record)));
     const Output audit = run(tether({"audit", out / "record.mcap"}));
     EXPECT_EQ(audit.code, 1);
     EXPECT_THAT(audit.out, HasSubstr("truncated at ST"));
@@ -41,7 +42,7 @@ class Folder : public RunTest {
 TEST_F(Folder, WhoseFilesMayNotGrowEndsTheRunWithItsReason) {
   const auto failure = expect_failed(
       run(limited(flight(), "-f 96")),
-      {"setup_failed", {(out_ / "record.mcap").string(), "File too large", "kept up to ST"}});
+      {"setup_failed", {(out_ / "record.mcap").string(), "File too large", "the run reached ST"}});
   expect_truncated(failure, out_);
   EXPECT_EQ(run(flight()).code, 0);
   EXPECT_EQ(result()["end"], "finished");

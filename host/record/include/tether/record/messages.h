@@ -247,6 +247,10 @@ struct RawImage {
   std::variant<std::vector<float>, std::vector<std::uint16_t>> pixels;
 };
 
+/// What a run logs between its header and its end.
+using Message = std::variant<Interaction, CommandEffect, GroundTruth, Annotation, Stop, Contact,
+                             Battery, RadioMessage, Image, RawImage>;
+
 /// An entity of the world that is known in advance (frame A), in the world frame W.
 struct Anchor {
   std::string name;

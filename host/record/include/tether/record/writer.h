@@ -15,16 +15,7 @@ class Recorder {
  public:
   virtual ~Recorder() = default;
   virtual void write(const Header& header) = 0;
-  virtual void write(SimTime at, const Interaction& message) = 0;
-  virtual void write(SimTime at, const CommandEffect& message) = 0;
-  virtual void write(SimTime at, const GroundTruth& message) = 0;
-  virtual void write(SimTime at, const Annotation& message) = 0;
-  virtual void write(SimTime at, const Stop& message) = 0;
-  virtual void write(SimTime at, const Contact& message) = 0;
-  virtual void write(SimTime at, const Battery& message) = 0;
-  virtual void write(SimTime at, const RadioMessage& message) = 0;
-  virtual void write(SimTime at, const Image& message) = 0;
-  virtual void write(SimTime at, const RawImage& message) = 0;
+  virtual void write(SimTime at, const Message& message) = 0;
   /// Passes everything written so far to the operating system (not necessarily to the disk).
   virtual void flush() = 0;
   /// The last call.
