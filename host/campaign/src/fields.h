@@ -1,0 +1,199 @@
+#pragma once
+
+#include "json_reader.h"
+
+#include <algorithm>
+#include <concepts>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+/// The two directions of `fields`, which lists the members of a part of a result once: `io` is a
+/// FieldWriter or a FieldReader. The order is that of the text. Times are in seconds, to the
+/// nanosecond; an optional value that is not there is null, and a structure is an object.
+namespace tether::campaign {
+
+inline constexpr const char* kNotReported = "not reported";
+
+template <class Value>
+concept Time = requires(const Value& value) {
+  to_ns(value);
+};
+// Division rounds correctly, so that every nanosecond count prints short and reads back exactly.
+double exact_seconds(const Time auto& time) {
+  return static_cast<double>(to_ns(time)) / 1e9;
+}
+
+template <class Value, class Plain>
+concept Maybe = std::same_as<std::remove_const_t<Value>, Plain>;
+
+template <class Value>
+inline constexpr bool kIsOptional = false;
+template <class Value>
+inline constexpr bool kIsOptional<std::optional<Value>> = true;
+template <class Value>
+inline constexpr bool kIsList = false;
+template <class Value>
+inline constexpr bool kIsList<std::vector<Value>> = true;
+
+class FieldWriter {
+ public:
+  Json json = Json::object();
+
+  void operator()(std::string_view name, const auto& value) {
+    json[std::string(name)] = json_of(value);
+  }
+  /// Members whose presence follows from a condition.
+  static bool has(std::string_view, bool condition) { return condition; }
+  template <class Value>
+  static const Value& value_of(const std::optional<Value>& value) {
+    return *value;
+  }
+  /// A member that may be absent.
+  template <class Value>
+  void optional(std::string_view name, const std::optional<Value>& value) {
+    if (value) (*this)(name, *value);
+  }
+  /// A text or a list that is absent if it is empty.
+  void some(std::string_view name, const auto& value) {
+    if (!value.empty()) (*this)(name, value);
+  }
+  /// A member that results of earlier versions do not have.
+  void since(std::string_view name, const auto& value) { (*this)(name, value); }
+  /// A member that is written for readers other than Tether.
+  void derived(std::string_view name, const auto& value) { (*this)(name, value); }
+  /// What has another place in the text.
+  static void implied(const auto&, const auto&) {}
+  /// An enumerator, by its `name`, of `count`.
+  void word(std::string_view name_of_member, auto value, std::size_t) {
+    (*this)(name_of_member, std::string(name(value)));
+  }
+  void within(std::string_view name, int value, int, int) { (*this)(name, value); }
+  /// A figure, or a text that says that the simulator did not report it.
+  template <class Value>
+  void reported(std::string_view name, const std::optional<Value>& value) {
+    json[std::string(name)] = value ? Json(*value) : Json(kNotReported);
+  }
+  void object(std::string_view name, const auto& members) {
+    FieldWriter inner;
+    members(inner);
+    json[std::string(name)] = std::move(inner.json);
+  }
+  /// By functions to JSON and back.
+  void converted(std::string_view name, const auto& value, const auto& to_json, const auto&) {
+    json[std::string(name)] = to_json(value);
+  }
+
+  template <class Value>
+  static Json json_of(const Value& value) {
+    if constexpr (Time<Value>) {
+      return exact_seconds(value);
+    } else if constexpr (kIsOptional<Value>) {
+      return value ? json_of(*value) : Json(nullptr);
+    } else if constexpr (kIsList<Value>) {
+      Json array = Json::array();
+      for (const auto& element : value) array.push_back(json_of(element));
+      return array;
+    } else if constexpr (std::is_constructible_v<Json, const Value&>) {
+      return value;
+    } else {
+      FieldWriter io;
+      fields(io, value);
+      return std::move(io.json);
+    }
+  }
+};
+
+/// @throws Error(kBadFile) about the member, as JsonReader.
+class FieldReader {
+ public:
+  explicit FieldReader(JsonReader json) : json_(std::move(json)) {}
+
+  template <class Value>
+  void operator()(std::string_view name, Value& value) const {
+    if constexpr (std::is_same_v<Value, std::string>) {
+      value = json_.text(name);
+    } else if constexpr (std::is_same_v<Value, bool>) {
+      value = json_.boolean(name);
+    } else if constexpr (std::is_floating_point_v<Value>) {
+      value = json_.number(name);
+    } else if constexpr (std::is_integral_v<Value>) {
+      constexpr std::uint64_t kMost = std::numeric_limits<Value>::max();
+      value = static_cast<Value>(std::min(json_.count(name), kMost));
+    } else if constexpr (Time<Value>) {
+      value = Value(json_.seconds(name));
+    } else if constexpr (kIsOptional<Value>) {
+      value.reset();
+      if (!json_.member(name).is_null()) (*this)(name, value.emplace());
+    } else if constexpr (std::is_same_v<Value, std::vector<std::string>>) {
+      value = json_.texts(name);
+    } else if constexpr (std::is_same_v<Value, std::vector<double>>) {
+      value = json_.numbers(name);
+    } else if constexpr (kIsList<Value>) {
+      value.clear();
+      for (const JsonReader& element : json_.objects(name)) {
+        const FieldReader io(element);
+        fields(io, value.emplace_back());
+      }
+    } else if constexpr (std::is_same_v<Value, std::map<std::string, std::string>>) {
+      value = json_.object(name).all_texts();
+    } else {
+      const FieldReader io(json_.object(name));
+      fields(io, value);
+    }
+  }
+  bool has(std::string_view name, bool) const { return json_.has(name); }
+  template <class Value>
+  static Value& value_of(std::optional<Value>& value) {
+    return value ? *value : value.emplace();
+  }
+  template <class Value>
+  void optional(std::string_view name, std::optional<Value>& value) const {
+    if (json_.has(name)) (*this)(name, value.emplace());
+  }
+  void some(std::string_view name, auto& value) const { since(name, value); }
+  void since(std::string_view name, auto& value) const {
+    if (json_.has(name)) (*this)(name, value);
+  }
+  static void derived(std::string_view, const auto&) {}
+  static void implied(auto& value, const auto& source) { value = source; }
+  template <class Word>
+  void word(std::string_view name_of_member, Word& value, std::size_t count) const {
+    const std::string text = json_.text(name_of_member);
+    for (std::size_t i = 0; i < count; ++i) {
+      value = static_cast<Word>(i);
+      if (name(value) == text) return;
+    }
+    json_.fail(name_of_member, fmt::format("is \"{}\"", text));
+  }
+  void within(std::string_view name, int& value, int least, int most) const {
+    (*this)(name, value);
+    if (value < least || value > most)
+      json_.fail(name, fmt::format("must be {} to {}", least, most));
+  }
+  template <class Value>
+  void reported(std::string_view name, std::optional<Value>& value) const {
+    value.reset();
+    if (!json_.member(name).is_string()) (*this)(name, value.emplace());
+  }
+  void object(std::string_view name, const auto& members) const {
+    const FieldReader io(json_.object(name));
+    members(io);
+  }
+  void converted(std::string_view name, auto& value, const auto&, const auto& from_json) const {
+    value = from_json(json_.member(name));
+  }
+
+ private:
+  JsonReader json_;
+};
+
+}  // namespace tether::campaign
