@@ -26,7 +26,8 @@ class Replayed : public CoordinatorTest {
     timing.build_id = "0a";
     timing.builds[simulator_->world().uavs[0].name] = {{"argument 4", "3000000"}};
     timing.runs = {{simulator_->world().uavs[0].name, 1, kRecorded}};
-    options_.uavs[0].replay.emplace(timing, timing::ReplaySetting{.mode = timing::Mode::kExact},
+    options_.uavs[0].replay.emplace(timing,
+                                    timing::ReplaySetting{.mode = computer::ReplayMode::kExact},
                                     simulator_->world().uavs[0].name, 1);
     options_.uavs[0].replayed_from = record::ReplayInfo{"a.timing", "exact", "", "pi", "0a"};
     coordinator_ = std::make_unique<Coordinator>(*simulator_, recorder_, options_,

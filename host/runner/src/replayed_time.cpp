@@ -37,12 +37,12 @@ ReplayedTime replayed_time(const TrialSpec& spec) {
     throw Error(e.code(), {source.timing.string()}, e.what()).about(e.subject());
   }
   time.from = {.timing = source.timing.filename().string(),
-               .mode = std::string(timing::kModes[static_cast<std::size_t>(setting.mode)]),
+               .mode = std::string(computer::kReplayModes[static_cast<std::size_t>(setting.mode)]),
                .recorded_at = timing.recorded_at,
                .board = timing.board,
                .build_id = timing.build_id};
   time.has_waits = timing.clock.starts_with(computer::name(computer::ClockKind::kWall));
-  if (setting.mode != timing::Mode::kExact)
+  if (setting.mode != computer::ReplayMode::kExact)
     time.warnings = timing::warnings(timing::stage_rows(timing));
   for (std::string& warning : time.warnings)
     warning = fmt::format("{}: {}", source.timing.string(), warning);

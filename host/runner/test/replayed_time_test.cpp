@@ -49,7 +49,7 @@ TEST_F(ReplayedTimeTest, GivesEachUavItsTimeAndSaysWhereFrom) {
 }
 
 TEST_F(ReplayedTimeTest, RefusesTimingThatDoesNotFit) {
-  spec_.condition.replay->mode = timing::Mode::kExact;
+  spec_.condition.replay->mode = computer::ReplayMode::kExact;
   spec_.seed = 4;
   EXPECT_EQ(refused_subject(), timing_.runs[0].uav);
   spec_.condition.replay->counted = spec_.condition.replay->timing;

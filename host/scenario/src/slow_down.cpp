@@ -12,7 +12,8 @@ std::string why_not_slower(const Condition& condition, const Computer& computer)
   const computer::ClockKind clock = computer.clock.kind;
   if (computer.target && computer.target->ssh)
     return "its SUTs run on a board, which cannot be slowed down. Use a virtual target.";
-  if (clock == computer::ClockKind::kReplayed && condition.replay->mode == timing::Mode::kExact)
+  if (clock == computer::ClockKind::kReplayed &&
+      condition.replay->mode == computer::ReplayMode::kExact)
     return "its time is replayed call by call, which a slower program would not repeat. Use mode "
            "= \"resampled\" or \"scaled\".";
   if (clock == computer::ClockKind::kUnstamped)

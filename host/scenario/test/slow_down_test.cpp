@@ -43,7 +43,7 @@ TEST(SlowDown, MultipliesTheCostsOfACountedClock) {
 TEST(SlowDown, LeavesDrawnTimesToTheirReplay) {
   Condition condition;
   condition.computers[0].clock.kind = computer::ClockKind::kReplayed;
-  condition.replay.emplace().mode = timing::Mode::kResampled;
+  condition.replay.emplace().mode = computer::ReplayMode::kResampled;
   slow_down(condition, 1.5);
   EXPECT_EQ(condition.slowdown, 1.5);
   EXPECT_EQ(condition.computers[0].clock.factor, 1.0);
@@ -52,7 +52,7 @@ TEST(SlowDown, LeavesDrawnTimesToTheirReplay) {
 TEST(SlowDown, RefusesWhatCannotBeStretched) {
   Condition board, unstamped, free_wall, exact;
   exact.computers[0].clock.kind = computer::ClockKind::kReplayed;
-  exact.replay.emplace().mode = timing::Mode::kExact;
+  exact.replay.emplace().mode = computer::ReplayMode::kExact;
   board.computers[0].target.emplace().ssh.emplace();
   unstamped.computers[0].clock.kind = computer::ClockKind::kUnstamped;
   free_wall.computers[0].clock.kind = computer::ClockKind::kWall;

@@ -11,6 +11,9 @@
 #include <tether/timing/replay.h>
 
 namespace tether::timing {
+
+using computer::ReplayMode;
+using computer::UnknownStages;
 namespace {
 
 [[noreturn]] void refuse(const std::string& subject, const std::string& what) {
@@ -63,7 +66,7 @@ Replay::Replay(const Timing& timing, const ReplaySetting& setting, const std::st
   if (std::ranges::none_of(timing.runs, [&](const Run& run) { return run.uav == uav; }))
     refuse(uav, fmt::format("has no run of UAV \"{}\".", uav));
   for (auto& [stage, times] : samples_of(timing, uav)) sources_[stage].times_ns = times;
-  if (setting.mode == Mode::kExact) {
+  if (setting.mode == ReplayMode::kExact) {
     if (timing.build_id.empty())
       refuse("build_id",
              "names no build id, which an exact replay needs. Link the program with "
@@ -78,7 +81,7 @@ Replay::Replay(const Timing& timing, const ReplaySetting& setting, const std::st
     required_ = with_id(timing.build_id, build->second);
   } else if (setting.counted) {
     const auto counted = samples_of(*setting.counted, uav);
-    if (setting.mode == Mode::kScaled)
+    if (setting.mode == ReplayMode::kScaled)
       for (auto& [stage, source] : sources_) source.factor = ratio_of(stage, timing, counted);
     for (const auto& [stage, times] : counted)
       if (unknown_ == UnknownStages::kCounted && !knows(stage)) counted_[stage].times_ns = times;

@@ -7,6 +7,9 @@
 #include <tether/timing/replay.h>
 
 namespace tether::timing {
+
+using computer::ReplayMode;
+using computer::UnknownStages;
 namespace {
 
 using Times = std::vector<link::StageTime>;
@@ -25,7 +28,7 @@ Times taken(const Replay& replay, const std::vector<std::string>& stages) {
 
 TEST(Replay, ExactGivesEachCallItsTime) {
   const Timing timing = sample_timing();
-  Replay replay(timing, {.mode = Mode::kExact}, "uav1", 2);
+  Replay replay(timing, {.mode = ReplayMode::kExact}, "uav1", 2);
   EXPECT_EQ(replay.other_build("0a", timing.builds.at("uav1")), std::nullopt);
   for (const Call& call : timing.runs[1].calls) {
     ASSERT_EQ(replay.given(), call.stages);
@@ -47,7 +50,7 @@ TEST(Replay, ExactNamesTheFirstCallThatDiffers) {
   for (const auto& [call, stages, named] :
        {std::tuple("sleep", second.stages, "\"command\""),
         std::tuple("command", more, "\"detect\""), std::tuple("command", slower, "\"detect\"")}) {
-    Replay replay(timing, {.mode = Mode::kExact}, "uav1", 1);
+    Replay replay(timing, {.mode = ReplayMode::kExact}, "uav1", 1);
     ASSERT_EQ(replay.take(first.call, first.stages), std::nullopt);
     const auto difference = replay.take(call, stages);
     ASSERT_TRUE(difference) << call;
@@ -95,7 +98,7 @@ TEST(Replay, ScalesByCountedWork) {
     for (link::StageTime& time : call.stages)
       time.computing = Duration(time.stage == "detect" ? 1200 : 1000);
   const Replay plain(timing, {}, "uav1", 3);
-  const Replay scaled(timing, {.mode = Mode::kScaled, .counted = counted}, "uav1", 3);
+  const Replay scaled(timing, {.mode = ReplayMode::kScaled, .counted = counted}, "uav1", 3);
   for (const std::string stage : {"detect", "camera to command"}) {
     const double before = static_cast<double>(taken(plain, {stage})[0].computing.count());
     const double now = static_cast<double>(taken(scaled, {stage})[0].computing.count());
@@ -103,7 +106,7 @@ TEST(Replay, ScalesByCountedWork) {
   }
   timing.counted_ns.erase("detect");
   const Error error = bad_file_error(
-      [&] { Replay(timing, {.mode = Mode::kScaled, .counted = counted}, "uav1", 3); });
+      [&] { Replay(timing, {.mode = ReplayMode::kScaled, .counted = counted}, "uav1", 3); });
   EXPECT_EQ(error.subject(), "detect");
 }
 
@@ -132,14 +135,14 @@ TEST(Replay, RefusesTimingThatDoesNotFit) {
     return error.subject();
   };
   EXPECT_EQ(subject_of({}, "uav9", 1), "uav9");
-  EXPECT_EQ(subject_of({.mode = Mode::kExact}, "uav1", 9), "uav1");
+  EXPECT_EQ(subject_of({.mode = ReplayMode::kExact}, "uav1", 9), "uav1");
   Timing old = timing;
   old.builds.clear();
   EXPECT_NO_THROW(Replay(old, {}, "uav1", 1));
   timing.builds.swap(old.builds);
-  EXPECT_EQ(subject_of({.mode = Mode::kExact}, "uav1", 1), "build");
+  EXPECT_EQ(subject_of({.mode = ReplayMode::kExact}, "uav1", 1), "build");
   timing.build_id.clear();
-  EXPECT_EQ(subject_of({.mode = Mode::kExact}, "uav1", 1), "build_id");
+  EXPECT_EQ(subject_of({.mode = ReplayMode::kExact}, "uav1", 1), "build_id");
   for (std::size_t i = 0; i <= link::kMaxStages; ++i)
     timing.runs[0].calls[0].stages.push_back({"s" + std::to_string(i), Duration(1)});
   EXPECT_EQ(subject_of({}, "uav1", 1), "uav1");

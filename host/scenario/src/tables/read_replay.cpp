@@ -8,13 +8,13 @@
 namespace tether::scenario {
 namespace {
 
-using timing::Mode;
-using timing::UnknownStages;
+using computer::ReplayMode;
+using computer::UnknownStages;
 
 /// The reason why stages that were not recorded cannot take that; empty: they can.
 std::string why_not(const ReplaySource& source, UnknownStages unknown) {
   if (unknown == UnknownStages::kRefused) return "";
-  if (source.mode == Mode::kExact)
+  if (source.mode == ReplayMode::kExact)
     return "cannot be used with mode = \"exact\", in which every stage must be known.";
   if (unknown == UnknownStages::kCounted && source.counted.empty())
     return "is \"counted\", which needs the key 'counted': a timing file of the program that "
@@ -33,12 +33,13 @@ std::optional<ReplaySource> read_replay(const toml::Table& table, const Conditio
   }
   ReplaySource source;
   source.timing = table.existing_file("timing");
-  if (table.has("mode")) source.mode = static_cast<Mode>(table.choice("mode", timing::kModes));
-  const bool is_scaled = source.mode == Mode::kScaled;
+  if (table.has("mode"))
+    source.mode = static_cast<ReplayMode>(table.choice("mode", computer::kReplayModes));
+  const bool is_scaled = source.mode == ReplayMode::kScaled;
   if (table.has("counted")) source.counted = table.existing_file("counted");
   if (table.has("unknown_stages")) {
     source.unknown =
-        static_cast<UnknownStages>(table.choice("unknown_stages", timing::kUnknownStages));
+        static_cast<UnknownStages>(table.choice("unknown_stages", computer::kUnknownStages));
     if (const std::string why = why_not(source, source.unknown); !why.empty())
       table.fail("unknown_stages", why);
   }
@@ -58,11 +59,11 @@ void set_unknown_stages(Condition& condition, std::string_view name) {
     throw Error(ErrorCode::kUsage, fmt::format("--unknown-stages {}: {}", name, why))
         .about("--unknown-stages");
   };
-  const auto found = std::ranges::find(timing::kUnknownStages, name);
-  if (found == timing::kUnknownStages.end()) refuse("Allowed are refused, counted and zero.");
+  const auto found = std::ranges::find(computer::kUnknownStages, name);
+  if (found == computer::kUnknownStages.end()) refuse("Allowed are refused, counted and zero.");
   if (!condition.replay)
     refuse(fmt::format("condition \"{}\" does not have clock = \"replayed\".", condition.name));
-  const auto unknown = static_cast<UnknownStages>(found - timing::kUnknownStages.begin());
+  const auto unknown = static_cast<UnknownStages>(found - computer::kUnknownStages.begin());
   if (const std::string why = why_not(*condition.replay, unknown); !why.empty()) refuse(why);
   condition.replay->unknown = unknown;
 }

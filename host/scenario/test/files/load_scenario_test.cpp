@@ -51,9 +51,9 @@ TEST_F(LoadScenario, ReadsWhatIsReplayed) {
     return *scenario.conditions[0].replay;
   };
   EXPECT_EQ(source(timing).timing, scratch_.path("a.timing"));
-  EXPECT_EQ(source(timing).mode, timing::Mode::kResampled);
-  EXPECT_EQ(source(timing + "mode = \"exact\"").mode, timing::Mode::kExact);
-  EXPECT_EQ(source(timing + "unknown_stages = \"zero\"").unknown, timing::UnknownStages::kZero);
+  EXPECT_EQ(source(timing).mode, computer::ReplayMode::kResampled);
+  EXPECT_EQ(source(timing + "mode = \"exact\"").mode, computer::ReplayMode::kExact);
+  EXPECT_EQ(source(timing + "unknown_stages = \"zero\"").unknown, computer::UnknownStages::kZero);
   EXPECT_EQ(source(timing + "mode = \"scaled\"\ncounted = \"b.timing\"").counted,
             scratch_.path("b.timing"));
   for (const auto& [keys, line, subject] :
@@ -78,8 +78,8 @@ TEST_F(LoadScenario, ChangesWhatUnknownStagesTake) {
   EXPECT_EQ(refused("nothing"), "--unknown-stages");
   EXPECT_EQ(refused("counted"), "--unknown-stages");
   set_unknown_stages(condition, "zero");
-  EXPECT_EQ(condition.replay->unknown, timing::UnknownStages::kZero);
-  condition.replay->mode = timing::Mode::kExact;
+  EXPECT_EQ(condition.replay->unknown, computer::UnknownStages::kZero);
+  condition.replay->mode = computer::ReplayMode::kExact;
   EXPECT_EQ(refused("zero"), "--unknown-stages");
 }
 

@@ -11,6 +11,7 @@
 
 #include <tether/base/time.h>
 #include <tether/computer/clock.h>
+#include <tether/computer/replay.h>
 #include <tether/mission/mission.h>
 #include <tether/radio/settings.h>
 #include <tether/scenario/energy.h>
@@ -18,7 +19,6 @@
 #include <tether/scenario/profile.h>
 #include <tether/scenario/target.h>
 #include <tether/sim/world.h>
-#include <tether/timing/replay.h>
 #include <tether/uav/sensor_timing.h>
 
 /// Scenario files (TOML): everything that determines a run except the seed. All values here are
@@ -32,8 +32,8 @@ std::string_view name(Policy policy);
 /// Where the time of SUTs with computer::ClockKind::kReplayed comes from.
 struct ReplaySource {
   std::filesystem::path timing;  ///< a timing file; absolute
-  timing::Mode mode = timing::Mode::kResampled;
-  timing::UnknownStages unknown = timing::UnknownStages::kRefused;
+  computer::ReplayMode mode = computer::ReplayMode::kResampled;
+  computer::UnknownStages unknown = computer::UnknownStages::kRefused;
   /// A timing file of the program that flies, of a run under a counted clock; absolute; empty:
   /// none.
   std::filesystem::path counted{};

@@ -1,40 +1,21 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
+#include <tether/computer/replay.h>
 #include <tether/link/messages.h>
 #include <tether/timing/timing.h>
 
 namespace tether::timing {
 
-/// How recorded time is charged.
-enum class Mode {
-  kExact,      ///< each call gets the times that it had in the run of the same UAV and seed
-  kResampled,  ///< drawn from the times of the stage, keyed by seed, UAV, stage and index
-  kScaled,     ///< the same × counted work of the new build / of the one that was recorded
-};
-/// In the order of Mode.
-inline constexpr std::array<std::string_view, 3> kModes = {"exact", "resampled", "scaled"};
-
-/// What stages are charged that the timing does not have.
-enum class UnknownStages {
-  kRefused,  ///< they end the run
-  kCounted,  ///< drawn from their times under a counted clock
-  kZero,
-};
-/// In the order of UnknownStages.
-inline constexpr std::array<std::string_view, 3> kUnknownStages = {"refused", "counted", "zero"};
-
 struct ReplaySetting {
-  Mode mode = Mode::kResampled;
-  UnknownStages unknown = UnknownStages::kRefused;
+  computer::ReplayMode mode = computer::ReplayMode::kResampled;
+  computer::UnknownStages unknown = computer::UnknownStages::kRefused;
   /// The program that flies, under a counted clock: for kScaled and UnknownStages::kCounted.
   std::optional<Timing> counted{};
   double slowdown = 1.0;  ///< all times are multiplied by it; kExact: 1
@@ -73,7 +54,7 @@ class Replay {
   std::optional<std::string> difference(const std::string& call,
                                         const std::vector<link::StageTime>& stages) const;
 
-  UnknownStages unknown_;
+  computer::UnknownStages unknown_;
   std::string uav_;
   std::uint64_t seed_;
   std::optional<Build> required_;  // kExact: the build, its build id first
