@@ -101,7 +101,7 @@ std::string rendered(const ReportOptions& options) {
   if (options.format == "csv") return to_csv(report::trials_table(results));
   if (options.format == "summary-csv") return to_csv(report::summaries_table(results));
   const bool is_markdown = options.format == "markdown";
-  const std::vector<report::Verdict> verdicts = report::verdicts_of(results, options.folder);
+  const std::vector<report::Verdict> verdicts = report::verdicts_of(results);
   std::vector<report::Table> tables = run ? run_tables(results) : report::report_tables(results);
   std::vector<report::Table> first;
   for (const auto& points : report::by_scenario(verdicts)) {
@@ -140,7 +140,7 @@ int report(const ReportOptions& options, const std::stop_token&) {
 
 void print_campaign_summary(const campaign::CampaignResults& results,
                             const std::filesystem::path& folder) {
-  const std::vector<report::Verdict> verdicts = report::verdicts_of(results, folder);
+  const std::vector<report::Verdict> verdicts = report::verdicts_of(results);
   print(report::verdict_text(verdicts, markup_of_stdout()));
   const auto show = [](const report::Table& table) {
     print(to_text(table, os::text_columns(STDOUT_FILENO)) + "\n");

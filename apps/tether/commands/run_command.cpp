@@ -82,7 +82,7 @@ int run_and_print(const RunOptions& options, const std::stop_token& stop) {
   }
   if (!options.junit.empty())
     os::write_file_atomically(options.junit,
-                              report::to_junit(report::read_run_results(spec.folder), spec.folder));
+                              report::to_junit(report::results_of_run(result), spec.folder));
   if (options.json)
     fmt::print("{}\n", campaign::to_json(result));
   else if (!options.quiet)

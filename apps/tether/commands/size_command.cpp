@@ -157,7 +157,7 @@ int find_size(const SizeOptions& options, const std::stop_token& stop) {
   report::SizeReport& report = plan.report;
   if (const auto end = flights.fly(report); end != SizeTrials::End::kAnswered)
     return flights.say_why(end);
-  report.pace = report::pace_near_answer(report, out);
+  report.pace = report::pace_near_answer(report);
   write_answer(
       {report::size_answers(report), report::size_advice(report), report::size_json(report),
        report::size_plot(report), report::size_page(report), report::to_junit(report, out)},

@@ -146,7 +146,7 @@ int find_uavs(const SizeOptions& options, const std::stop_token& stop) {
       trials.fly(questions(report, campaign), [](const auto&) { return true; });
   report.not_flown = trials.not_flown();
   if (end != SizeTrials::End::kAnswered) return trials.say_why(end);
-  report.pace = report::pace_at_limit(report, out);
+  report.pace = report::pace_at_limit(report);
   write_answer(
       {report::uavs_answers(report), report::uavs_advice(report), report::uavs_json(report),
        report::uavs_plot(report), report::uavs_page(report), report::to_junit(report, out)},

@@ -193,6 +193,7 @@ TrialResult make_result(const scenario::Scenario& scenario, const scenario::Cond
   drop_metrics_of_missed_tasks(result, scenario);
   judge_missions(result, scenario, record);
   result.energy = energy_of(record, result.tasks);
+  result.pace = timing::pace_of(record);
   result.flight_digest = flight_digest(record);
   result.versions = {{"tether", record.header.tether_version},
                      {"simulator", record.header.simulator}};
@@ -247,6 +248,7 @@ std::string describe_replay(const TrialResult& result) {
 void invalidate(TrialResult& result, const std::string& reason) {
   result.outcome = Outcome::kFailed;
   result.reason = reason;
+  result.pace.reset();
   for (MetricValue& metric : result.metrics) {
     metric.value.reset();
     metric.missing_because = reason;

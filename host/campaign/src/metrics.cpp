@@ -187,6 +187,11 @@ std::optional<SimTime> finish_time(const record::Record& record, const std::stri
   return free_running ? finish->message.st_at_arrival : same_instant(finish->message.request_at);
 }
 
+bool MetricValue::is_better_if_more() const {
+  const scenario::MetricKind* known = scenario::find_metric_kind(kind);
+  return known && known->is_better_if_more;
+}
+
 std::vector<MetricValue> compute_metrics(std::span<const scenario::Metric> metrics,
                                          const record::Record& record) {
   std::vector<MetricValue> values;

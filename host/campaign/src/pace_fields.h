@@ -4,8 +4,9 @@
 
 #include <tether/computer/clock.h>
 #include <tether/record/messages.h>
+#include <tether/timing/pace.h>
 
-/// Members of parts of a result that are of a record.
+/// The pace of a result, and parts of it that others have, too.
 namespace tether::campaign {
 
 /// For the object of a SUT or a trial.
@@ -33,6 +34,100 @@ void fields(auto& io, Maybe<record::EmulatorInfo> auto& m) {
   io("program", m.program);
   io("cpu_model", m.cpu_model);
   io("costs", m.costs);
+}
+
+void fields(auto& io, Maybe<record::BoardInfo> auto& m) {
+  io("name", m.name);
+  io("cores", m.cores);
+  io("is_real", m.is_real);
+}
+
+void fields(auto& io, Maybe<record::RadioInfo> auto& m) {
+  io("model", m.model);
+  io("least_delay_s", m.least_delay);
+  io("data_rate_bit_s", m.data_rate_bit_s);
+  io("inbox_messages", m.inbox_messages);
+  if (!io.has("access", !m.access.empty())) return;
+  io("access", m.access);
+  io("queue_messages", m.queue_messages);
+  io("header_bytes", m.header_bytes);
+  io("delay_s", m.delay);
+  io("preamble_s", m.preamble);
+  io("slot_s", m.slot);
+  io("bandwidth_hz", m.bandwidth_hz);
+  io("tx_power_dbm", m.tx_power_dbm);
+  io("noise_figure_db", m.noise_figure_db);
+  io("reference_loss_db", m.reference_loss_db);
+  io("exponent", m.exponent);
+  io("shadowing_db", m.shadowing_db);
+  io("wall_loss_db", m.wall_loss_db);
+}
+
+void fields(auto& io, Maybe<timing::StageRow> auto& m) {
+  io("stage", m.stage);
+  io("count", m.count);
+  io("median_s", m.median_s);
+  io("p95_s", m.p95_s);
+  io("p99_s", m.p99_s);
+  io("worst_s", m.worst_s);
+  io("share", m.share);
+}
+
+void fields(auto& io, Maybe<timing::BoardPace> auto& m) {
+  io("board", m.board);
+  io("uavs", m.uavs);
+  io("median_s", m.median_s);
+  io("p95_s", m.p95_s);
+  io.optional("alone", m.alone);
+}
+
+void fields(auto& io, Maybe<timing::Speed::Program> auto& m) {
+  io("uav", m.uav);
+  fields(io, m.clock);
+  io.optional("replay", m.replay);
+  io.some("board", m.board);
+  io.some("computer", m.computer);
+  io.some("launcher", m.launcher);
+  io("concurrent", m.concurrent);
+  io.some("build", m.build);
+  io.some("loader", m.loader);
+  io.optional("pinned_core", m.pinned_core);
+  io("idle_w", m.idle_W);
+  io("busy_core_w", m.busy_core_W);
+}
+
+/// Without the emulator, which the result has.
+void fields(auto& io, Maybe<timing::Speed> auto& m) {
+  io("programs", m.programs);
+  io.some("boards", m.boards);
+  io.some("machine", m.machine);
+  io.some("target", m.target);
+}
+
+/// Without the seed, which the result has.
+void fields(auto& io, Maybe<timing::Pace> auto& m) {
+  io("uav", m.uav);
+  io("stages", m.stages);
+  if (io.has("camera", !m.camera.empty())) {
+    io("camera", m.camera);
+    io("images", m.images);
+    io("read_hz", m.read_hz);
+    io.optional("offered_hz", m.offered_hz);
+    io("median_s", m.median_s);
+    io("p95_s", m.p95_s);
+    io("waiting", m.waiting);
+  }
+  io("shares_real_board", m.shares_real_board);
+  if (io.has("shared_board", !m.shared_board.empty())) {
+    io("shared_board", m.shared_board);
+    io("programs", m.programs);
+  }
+  io.some("boards", m.boards);
+  io("speed", m.speed);
+  if (!io.has("radio", !m.radio.model.empty())) return;
+  io("radio", m.radio);
+  io("messages", m.messages);
+  io("messages_arrived", m.messages_arrived);
 }
 
 }  // namespace tether::campaign

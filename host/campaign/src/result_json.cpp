@@ -258,6 +258,11 @@ void fields(auto& io, Maybe<TrialResult> auto& m) {
   io.some("tasks", m.tasks);
   io.some("clauses", m.clauses);
   io.some("energy", m.energy);
+  io.optional("pace", m.pace);
+  if (m.pace) {
+    io.implied(m.pace->seed, m.seed);
+    io.implied(m.pace->speed.emulator, m.emulator);
+  }
   io.some("warnings", m.warnings);
   io("versions", m.versions);
   io("this_run", m.this_run);

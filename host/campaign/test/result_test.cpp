@@ -68,7 +68,7 @@ TEST_F(Result, ReadsBackWithEveryOptionalPart) {
   const std::string plain = to_json(trial_);
   for (const char* member :
        {"\"target\":", "\"step_s\"", "overshoot", "computing_s", "warnings", "\"tasks\"",
-        "\"clauses\"", "emulator", "\"energy\"", "\"margins\"", "\"quantiles\""})
+        "\"clauses\"", "emulator", "\"pace\"", "\"energy\"", "\"margins\"", "\"quantiles\""})
     EXPECT_THAT(plain, testing::Not(HasSubstr(member)));
   trial_.clock.kind = computer::ClockKind::kScripted;
   trial_.clock.computing = Duration(2'500'000);
@@ -95,6 +95,41 @@ TEST_F(Result, ReadsBackWithEveryOptionalPart) {
                     .charge_to = 0.5,
                     .least_voltage_V = 11.25,
                     .tasks = {{"find", {6, 5, 4, 3, 2, 1}}}}};
+  trial_.pace = timing::Pace{.uav = "uav1",
+                             .seed = trial_.seed,
+                             .stages = {{"detect", 40, 0.02, 0.03, 0.04, 0.05, 0.75}},
+                             .camera = "camera",
+                             .images = 41,
+                             .read_hz = 29.5,
+                             .offered_hz = 30.0,
+                             .median_s = 0.02,
+                             .p95_s = 0.03,
+                             .shares_real_board = true,
+                             .shared_board = "obc",
+                             .programs = 3,
+                             .waiting = 0.25,
+                             .boards = {{.board = "obc", .uavs = {"uav1"}, .alone = 0.5}},
+                             .messages = 7,
+                             .messages_arrived = 6};
+  trial_.pace->speed = {.programs = {{.uav = "uav1",
+                                      .clock = trial_.clock,
+                                      .replay = record::ReplayInfo{"t", "exact", "now", "pi", "0a"},
+                                      .board = "obc",
+                                      .computer = "obc",
+                                      .launcher = "nice",
+                                      .concurrent = true,
+                                      .build = "0a\nargument 1 x",
+                                      .loader = "library ld-linux.so.2",
+                                      .pinned_core = 1,
+                                      .idle_W = 2.0,
+                                      .busy_core_W = 3.0}},
+                        .boards = {{"obc", 2, false}},
+                        .machine = "here",
+                        .target = "pi ssh://pi",
+                        .emulator = trial_.emulator};
+  trial_.pace->radio.model = "log_distance";
+  trial_.pace->radio.access = "csma";
+  trial_.pace->radio.slot = Duration(9'000);
   trial_.warnings = {{Consequence::kMissing, {"w.sdf", 7}, "<include> of 'sun'", "is not found"},
                      {Consequence::kNoEffect, {}, "visual 'v'", "is plain", true}};
   trial_.sync.stops = StopFigures{1200, Duration(73'000)};
@@ -245,6 +280,16 @@ TEST_F(MakeResult, TakesEverythingFromTheRecord) {
   EXPECT_EQ(result.this_run.largest_lag, milliseconds(40));
   EXPECT_EQ(result.this_run.wall, seconds(2));
   EXPECT_EQ(result.versions.at("sut of uav1"), "tether-sut 0.1.0");
+}
+
+TEST_F(MakeResult, HasThePaceUnlessItFailed) {
+  record::Record record = finished_record();
+  record.header.policy = record::kConservativeBarrier;
+  TrialResult result = make(record, kReached);
+  EXPECT_EQ(result.pace, timing::pace_of(record));
+  EXPECT_EQ(result.pace.value().seed, 5u);
+  invalidate(result, "the SUT was lost");
+  EXPECT_FALSE(result.pace);
 }
 
 TEST_F(MakeResult, MissesTheGoalWithAClause) {

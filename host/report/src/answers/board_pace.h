@@ -3,13 +3,9 @@
 #include <span>
 #include <vector>
 
-#include <tether/report/pace.h>
+#include <tether/report/verdict.h>
 
 namespace tether::report {
-
-/// Of each computer of a fleet, in the record's order; empty if there are not several.
-/// @param paces of each SUT of the record, in its order.
-std::vector<BoardPace> board_paces(const record::Record& record, std::span<const Pace> paces);
 
 /// The slowest one: by the cost of an image or, without images, by how long the others waited for
 /// it. @pre not empty.

@@ -136,7 +136,7 @@ std::string optimism_sentence(const Comparison& comparison, const campaign::Metr
   const double hidden = comparison.means.difference;
   const int places = decimals_for(comparison.means);
   const bool smaller = hidden > 0.0;
-  const bool better = smaller != is_better_if_more(metric);
+  const bool better = smaller != metric.is_better_if_more();
   const std::string label = in_a_sentence(metric.label);
   if (hidden == 0.0 || contains_zero(comparison.means.ci95))
     return fmt::format(

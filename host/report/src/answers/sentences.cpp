@@ -172,8 +172,8 @@ std::string doubts_text(const ConditionVerdict& condition) {
                         counted(condition.throttled, "flight"));
   if (condition.crashed > 0)
     text += fmt::format(" A UAV crashed in {}.", counted(condition.crashed, "flight"));
-  if (!condition.unreadable.empty())
-    text += fmt::format(" The computing times are not known: {}.", condition.unreadable);
+  if (!condition.unknown_pace.empty())
+    text += fmt::format(" The computing times are not known: {}.", condition.unknown_pace);
   return text;
 }
 
@@ -371,7 +371,7 @@ std::optional<Answer> unseen_answer(const std::string& condition,
 }
 
 std::vector<Answer> answers_on_flights(std::span<const campaign::TrialResult* const> trials,
-                                       const std::string& unreadable) {
+                                       const std::string& unknown_pace) {
   std::vector<Answer> answers;
   const ConditionVerdict all = verdict_of(results_of("", trials));
   if (!all.left_out.empty())
@@ -380,8 +380,8 @@ std::vector<Answer> answers_on_flights(std::span<const campaign::TrialResult* co
     answers.push_back({"Busy machine", ": " + doubt_text(*busy, all) + "."});
   if (const MissedLimits missed = missed_limits(trials); !missed.empty())
     answers.push_back({"Not met", ": " + missed_text(missed) + "."});
-  if (!unreadable.empty())
-    answers.push_back({"The computing times are not known", ": " + unreadable + "."});
+  if (!unknown_pace.empty())
+    answers.push_back({"The computing times are not known", ": " + unknown_pace + "."});
   return answers;
 }
 

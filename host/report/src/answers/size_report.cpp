@@ -169,8 +169,7 @@ std::vector<Answer> size_answers(const SizeReport& report) {
                          ? fmt::format("no more than {} were allowed",
                                        counted(report.most_flights, "flight"))
                          : "slowdowns in between could not be decided")});
-  std::ranges::move(answers_on_flights(trials, report.pace.unreadable),
-                    std::back_inserter(answers));
+  std::ranges::move(answers_on_flights(trials, report.pace.unknown), std::back_inserter(answers));
   if (copies > 0)
     answers.push_back({"Not counted", fmt::format(": {} more, each a copy of one at the same "
                                                   "slowdown, because its seed changes nothing.",
@@ -223,7 +222,7 @@ std::vector<std::string> size_advice(const SizeReport& report) {
   return advice;
 }
 
-PaceOrReason pace_near_answer(const SizeReport& report, const std::filesystem::path& folder) {
+PaceOrReason pace_near_answer(const SizeReport& report) {
   const campaign::TrialResult* nearest = nullptr;
   double least = 0.0;
   const SizedCondition& sized = report.synchronised;
@@ -234,10 +233,7 @@ PaceOrReason pace_near_answer(const SizeReport& report, const std::filesystem::p
     nearest = &sized.trials[i];
     least = distance;
   }
-  if (nearest == nullptr) return {};
-  return pace_or_reason(folder /
-                        campaign::trial_folder(report.scenario, nearest->condition, nearest->seed) /
-                        "record.mcap");
+  return nearest ? pace_or_reason(*nearest) : PaceOrReason{};
 }
 
 std::optional<double> margin_of(const campaign::MetricValue& metric) {

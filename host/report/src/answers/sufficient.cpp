@@ -13,7 +13,7 @@ namespace {
 /// What was flown with one condition at one combination of the other values, by cpu_factor.
 using ByFactor = std::map<double, Ruling>;
 
-bool is_factor(const scenario::Setting& setting) {
+bool is_factor(const campaign::Setting& setting) {
   return setting.key == "cpu_factor" || setting.key == "condition.cpu_factor";
 }
 
@@ -37,7 +37,7 @@ bool is_sufficient(Ruling ruling) {
 
 std::string other_settings(const Verdict& point) {
   std::string text;
-  for (const scenario::Setting& setting : point.settings)
+  for (const campaign::Setting& setting : point.settings)
     if (!is_factor(setting))
       text += fmt::format("{}{} = {}", text.empty() ? " with " : ", ", setting.key, setting.value);
   return text;

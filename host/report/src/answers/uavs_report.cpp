@@ -70,17 +70,14 @@ std::vector<UavsLevel> levels_of(const UavsReport& report) {
   return levels;
 }
 
-PaceOrReason pace_at_limit(const UavsReport& report, const std::filesystem::path& folder) {
+PaceOrReason pace_at_limit(const UavsReport& report) {
   const campaign::TrialResult* trial = nullptr;
   for (const UavsPoint& point : report.points) {
     if (point.trials.empty()) continue;
     trial = &point.trials.front();
     if (point.uavs >= report.answer.too_many) break;
   }
-  if (trial == nullptr) return {};
-  return pace_or_reason(folder /
-                        campaign::trial_folder(trial->scenario, trial->condition, trial->seed) /
-                        "record.mcap");
+  return trial ? pace_or_reason(*trial) : PaceOrReason{};
 }
 
 std::size_t flights_of(const UavsReport& report) {
@@ -116,8 +113,7 @@ std::vector<Answer> uavs_answers(const UavsReport& report) {
     answers.push_back({"Not counted", fmt::format(": {}, each a copy of another one, because its "
                                                   "seed changes nothing.",
                                                   counted(copies, "flight"))});
-  std::ranges::move(answers_on_flights(trials, report.pace.unreadable),
-                    std::back_inserter(answers));
+  std::ranges::move(answers_on_flights(trials, report.pace.unknown), std::back_inserter(answers));
   return answers;
 }
 

@@ -15,7 +15,6 @@
 #include <tether/campaign/copies.h>
 #include <tether/report/size_report.h>
 #include <tether/report/verdict.h>
-#include <tether/scenario/scenario.h>
 #include <tether/sizing/by_levels.h>
 
 namespace tether::report {
@@ -24,7 +23,7 @@ namespace {
 constexpr std::size_t kMostFlights = 1000;
 
 bool is_free_running(const campaign::TrialResult& trial) {
-  return trial.policy == scenario::name(scenario::Policy::kFreeRunning);
+  return trial.policy == record::kFreeRunning;
 }
 
 /// Of a flight that was cut, the record is not complete, and an audit of it says nothing.
@@ -259,35 +258,28 @@ std::vector<Advice> advice_on(const ConditionVerdict& lead) {
   return advice;
 }
 
-/// Of the first of the trials whose record can be read; its boards are those of all trials.
-/// @param unreadable why the first record that cannot be read cannot; only if none can.
-std::optional<Pace> pace_of_condition(const campaign::ScenarioResults& scenario,
-                                      const campaign::ConditionResults& condition,
-                                      const std::filesystem::path& folder, bool is_run,
-                                      std::string& unreadable) {
+/// Of the first of the trials that have one; its boards are those of all trials.
+/// @param unknown why that of the first one is not known; only if none is.
+std::optional<Pace> pace_of_condition(const campaign::ConditionResults& condition,
+                                      std::string& unknown) {
   std::vector<const campaign::TrialResult*> trials;
   for (const campaign::TrialResult& trial : condition.trials)
-    if (trial.outcome != campaign::Outcome::kFailed && !is_free_running(trial))
-      trials.push_back(&trial);
+    if (trial.outcome != campaign::Outcome::kFailed) trials.push_back(&trial);
   std::ranges::stable_sort(trials, {}, [](const campaign::TrialResult* trial) {
     return trial->outcome != campaign::Outcome::kGoalMissed;
   });
   std::optional<Pace> first;
   std::vector<std::vector<BoardPace>> boards;
   for (const campaign::TrialResult* trial : trials) {
-    const std::filesystem::path of_trial =
-        is_run
-            ? folder
-            : folder / campaign::trial_folder(scenario.scenario, condition.condition, trial->seed);
-    auto [pace, reason] = pace_or_reason(of_trial / "record.mcap");
-    if (unreadable.empty()) unreadable = reason;
+    auto [pace, reason] = pace_or_reason(*trial);
+    if (unknown.empty()) unknown = reason;
     if (!pace) continue;
     boards.push_back(pace->boards);
     if (!first) first = std::move(pace);
     if (first->boards.empty()) break;
   }
   if (!first) return std::nullopt;
-  unreadable.clear();
+  unknown.clear();
   if (boards.size() > 1) first->boards = over_flights(boards);
   return first;
 }
@@ -298,7 +290,7 @@ Verdict unexplained(const campaign::ScenarioResults& scenario,
   Verdict verdict{.scenario = scenario.swept_from.empty() ? scenario.scenario : scenario.swept_from,
                   .conditions = {}};
   verdict.settings = scenario.settings;
-  for (const scenario::Setting& setting : scenario.settings)
+  for (const campaign::Setting& setting : scenario.settings)
     verdict.point +=
         fmt::format("{}{} = {}", verdict.point.empty() ? "" : ", ", setting.key, setting.value);
   for (const campaign::ConditionResults& condition : scenario.conditions) {
@@ -393,21 +385,27 @@ Verdict verdict_of(const campaign::ScenarioResults& scenario,
   return rule({unexplained(scenario, paces)}, std::vector{&scenario}).front();
 }
 
-std::vector<Verdict> verdicts_of(const campaign::CampaignResults& results,
-                                 const std::filesystem::path& folder) {
-  const bool is_run = std::filesystem::exists(folder / campaign::kResultFile);
+PaceOrReason pace_or_reason(const campaign::TrialResult& trial) {
+  if (trial.pace || is_free_running(trial)) return {trial.pace, ""};
+  return {
+      std::nullopt,
+      fmt::format("the result of seed {} does not have them, because it is of an earlier version "
+                  "of Tether, or its program reports no stages",
+                  trial.seed)};
+}
+
+std::vector<Verdict> verdicts_of(const campaign::CampaignResults& results) {
   std::vector<Verdict> verdicts;
   std::vector<const campaign::ScenarioResults*> scenarios;
   for (const campaign::ScenarioResults& scenario : results.scenarios) {
     std::vector<std::optional<Pace>> paces;
-    std::vector<std::string> unreadable;
+    std::vector<std::string> unknown;
     for (const campaign::ConditionResults& condition : scenario.conditions)
-      paces.push_back(
-          pace_of_condition(scenario, condition, folder, is_run, unreadable.emplace_back()));
+      paces.push_back(pace_of_condition(condition, unknown.emplace_back()));
     verdicts.push_back(unexplained(scenario, paces));
     scenarios.push_back(&scenario);
-    for (std::size_t i = 0; i < unreadable.size(); ++i)
-      verdicts.back().conditions[i].unreadable = unreadable[i];
+    for (std::size_t i = 0; i < unknown.size(); ++i)
+      verdicts.back().conditions[i].unknown_pace = unknown[i];
   }
   return rule(std::move(verdicts), scenarios);
 }

@@ -169,7 +169,7 @@ Case error_case(const std::string& trial, const std::string& message) {
 std::string to_junit(const campaign::CampaignResults& results,
                      const std::filesystem::path& folder) {
   const bool is_run = std::filesystem::exists(folder / campaign::kResultFile);
-  const std::vector<Verdict> verdicts = verdicts_of(results, folder);
+  const std::vector<Verdict> verdicts = verdicts_of(results);
   std::vector<Suite> suites;
   for (std::size_t i = 0; i < results.scenarios.size(); ++i) {
     const campaign::ScenarioResults& scenario = results.scenarios[i];

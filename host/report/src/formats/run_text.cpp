@@ -143,7 +143,7 @@ std::string run_text(const campaign::TrialResult& result, const std::filesystem:
                      Markup markup) {
   const bool has_failed = result.outcome == campaign::Outcome::kFailed;  // its reason is an error
   const std::string head =
-      verdict_text(verdicts_of(results_of_run(result), folder), markup) +
+      verdict_text(verdicts_of(results_of_run(result)), markup) +
       fmt::format("{} under \"{}\", seed {}: {}{}\n", result.scenario, result.condition,
                   result.seed, campaign::name(result.outcome),
                   has_failed ? "" : ": " + result.reason);

@@ -194,7 +194,7 @@ std::string campaign_page(const campaign::CampaignResults& results,
   FigureMaker figures(results.scenarios.size());
   const std::string& name = results.manifest.name;
   std::string body = element("h1", name);
-  const std::vector<Verdict> verdicts = verdicts_of(results, folder);
+  const std::vector<Verdict> verdicts = verdicts_of(results);
   const std::vector<std::vector<Verdict>> groups = by_scenario(verdicts);
   body += groups.size() == 1 ? answer_html(groups.front()) : answers_html(groups);
   body += verdict_picture_html(groups);

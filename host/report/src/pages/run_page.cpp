@@ -197,7 +197,7 @@ std::string run_page(const std::filesystem::path& folder) {
   const campaign::TrialResult& trial = trial_of(results);
   const std::string& title = results.manifest.name;
   std::string body = element("h1", title);
-  const std::vector<Verdict> verdicts = verdicts_of(results, folder);
+  const std::vector<Verdict> verdicts = verdicts_of(results);
   body += answer_html(verdicts) + verdict_picture_html({verdicts});
   body += element("p", outcome_sentences(trial)) + "\n" + problems_box(problems(results));
   if (trial.outcome != campaign::Outcome::kFailed)

@@ -209,8 +209,7 @@ bool is_synchronised_twin(const campaign::ConditionResults& a,
                           const campaign::ConditionResults& b) {
   if (a.trials.empty() || b.trials.empty()) return false;
   const campaign::TrialResult &first_a = a.trials.front(), &first_b = b.trials.front();
-  return first_a.policy == scenario::name(scenario::Policy::kConservativeBarrier) &&
-         first_b.policy == scenario::name(scenario::Policy::kFreeRunning) &&
+  return first_a.policy == record::kConservativeBarrier && first_b.policy == record::kFreeRunning &&
          first_a.clock == first_b.clock && first_a.target == first_b.target &&
          first_a.profiles == first_b.profiles;
 }
@@ -310,7 +309,7 @@ Table optimism_table(const campaign::ScenarioResults& scenario) {
       "Positive: the unsynchronised test reports a value that is better by this amount.");
   for (const Comparison& c : optimism(scenario)) {
     const campaign::MetricValue& metric = *scenario.find_metric(c.metric);
-    if (is_better_if_more(metric))
+    if (metric.is_better_if_more())
       table.notes.push_back(
           fmt::format("{}: more is better, so negative values are better.", metric.label));
   }

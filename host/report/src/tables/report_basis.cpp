@@ -102,7 +102,7 @@ struct Basis {
     violations += trial.sync.causality_violations;
     interactions += trial.sync.interactions;
     if (trial.sync.stops) add(*trial.sync.stops);
-    if (trial.policy == scenario::name(scenario::Policy::kConservativeBarrier)) ++synchronised;
+    if (trial.policy == record::kConservativeBarrier) ++synchronised;
     if (!trial.audit) return;
     ++audited;
     if (trial.audit->passed) ++passed;

@@ -39,10 +39,6 @@ std::string exact(const std::optional<double>& value) {
 bool has_crash(const campaign::TrialResult& trial) {
   return std::ranges::any_of(trial.contacts, [](const auto& own) { return own.hard > 0; });
 }
-bool is_better_if_more(const campaign::MetricValue& metric) {
-  const auto* kind = scenario::find_metric_kind(metric.kind);
-  return kind != nullptr && kind->is_better_if_more;
-}
 std::string limit_text(const campaign::MetricValue& metric) {
   if (metric.min) return "≥ " + exact(*metric.min);
   return metric.max ? exact(*metric.max) : kNone;

@@ -28,8 +28,6 @@ std::string exact(double value);
 std::string exact(const std::optional<double>& value);
 /// Whether a UAV hit something harder than the scenario allows.
 bool has_crash(const campaign::TrialResult& trial);
-/// Whether a larger value of the metric is better.
-bool is_better_if_more(const campaign::MetricValue& metric);
 /// "0.5" or, of a minimum, "≥ 0.5".
 std::string limit_text(const campaign::MetricValue& metric);
 /// "Time required (s)"; counts have no unit.

@@ -158,7 +158,7 @@ Table sweep_table(const Sweep& sweep) {
   Table table;
   table.title = fmt::format("Sweep of {}", sweep.scenario);
   std::vector<std::string> headings;
-  for (const scenario::Setting& setting : first.settings) headings.push_back(setting.key);
+  for (const campaign::Setting& setting : first.settings) headings.push_back(setting.key);
   table.text_columns = headings.size() + 1;
   headings.insert(headings.end(), {"Condition", "Goal reached", "95 % interval"});
   for (const std::string& name : first.metrics) {
@@ -170,7 +170,7 @@ Table sweep_table(const Sweep& sweep) {
   for (const campaign::ScenarioResults* point : sweep.points) {
     for (const campaign::ConditionResults& condition : point->conditions) {
       std::vector<std::string> row;
-      for (const scenario::Setting& setting : point->settings)
+      for (const campaign::Setting& setting : point->settings)
         row.push_back(short_value(setting.value));
       row.push_back(condition.condition);
       row.push_back(fmt::format("{} of {}", condition.count(campaign::Outcome::kGoalReached),

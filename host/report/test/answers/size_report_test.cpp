@@ -93,12 +93,12 @@ TEST(SizeReport, AdvisesOnTheStageAndOnWhatIsNotKnown) {
                                      HasSubstr("--between 0.1,1")}));
 }
 
-TEST(SizeReport, NamesTheRecordWithoutWhichComputingTimesAreNotKnown) {
+TEST(SizeReport, NamesTheResultThatDoesNotHaveComputingTimes) {
   SizeReport report = sample_size();
-  report.pace = pace_near_answer(report, "/nonexistent");
+  report.pace = pace_near_answer(report);
   EXPECT_EQ(report.pace.pace, std::nullopt);
   EXPECT_THAT(size_sentences(report).back(),
-              testing::AllOf(HasSubstr("not known"), HasSubstr("/nonexistent/turn/")));
+              testing::AllOf(HasSubstr("not known"), HasSubstr("the result of seed ")));
 }
 
 TEST(SizeReport, ABoardSufficesIfAllOfItsCalibrationDoes) {

@@ -61,8 +61,8 @@ TEST(UavsReport, SaysWhatSharingCostsAndWhatToDo) {
                           .waiting = 0.66};
   EXPECT_EQ(uavs_answers(report)[1].rest,
             ": with 3 UAVs, an image costs 120 ms on the board, 66 % of it waiting for cores.");
-  report.pace = pace_at_limit(report, "/nonexistent");
-  EXPECT_THAT(uavs_answers(report).back().rest, HasSubstr("/nonexistent/"));
+  report.pace = pace_at_limit(report);
+  EXPECT_THAT(uavs_answers(report).back().rest, HasSubstr("the result of seed "));
   report.pace.pace = Pace{.stages = {{.stage = "detect", .share = 0.8}}};
   EXPECT_THAT(uavs_advice(report)[0], HasSubstr("speed up “detect” first"));
   EXPECT_THAT(uavs_advice(report_of({{4, 36, 36}}))[0], StartsWith("To find the limit"));

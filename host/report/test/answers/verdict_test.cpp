@@ -224,15 +224,20 @@ TEST(Verdict, OfASweepOverTheFactorSaysHowSlowWouldDo) {
   EXPECT_THAT(answers[2].lead, Not(HasSubstr("would do")));  // at 30: not even the least
 }
 
-TEST(Verdict, NamesARecordThatCannotBeRead) {
-  const ScratchFolder folder;
+TEST(Verdict, TakesThePaceOfItsFlightsAndNamesAResultWithoutOne) {
   campaign::CampaignResults results;
-  results.scenarios = {flights(1, 0)};
-  folder.write("result.json", "{}");
-  folder.write("record.mcap", "no record");
-  const std::vector<Verdict> verdicts = verdicts_of(results, folder.path());
-  EXPECT_THAT(verdicts[0].conditions[0].unreadable, HasSubstr("record.mcap"));
-  EXPECT_THAT(answers_of(verdicts)[0].rest, HasSubstr("The computing times are not known: "));
+  results.scenarios = {flights(1, 1)};
+  EXPECT_THAT(verdicts_of(results)[0].conditions[0].unknown_pace, HasSubstr("earlier version"));
+  EXPECT_THAT(answers_of(verdicts_of(results))[0].rest,
+              HasSubstr("The computing times are not known: the result of seed "));
+  for (campaign::TrialResult& trial : results.scenarios[0].conditions[0].trials) {
+    trial.pace = slow_pace();
+    trial.pace->seed = trial.seed;
+  }
+  const ConditionVerdict condition = verdicts_of(results)[0].conditions[0];
+  EXPECT_EQ(condition.unknown_pace, "");
+  EXPECT_EQ(condition.pace->seed, results.scenarios[0].conditions[0].trials[1].seed)
+      << "of the flight that missed the goal";
 }
 
 TEST(Verdict, SaysWhatItsWordsRestOn) {

@@ -88,6 +88,9 @@ class CampaignPage : public CampaignFixture {
             {at, i, {"uav1", "depth", at, i, 2, 1, std::vector<float>{1.0F, 2.0F}}});
       }
       write_record(folder_of(condition, 1) / "record.mcap", record);
+      campaign::TrialResult flown = campaign::read_result(folder_of(condition, 1));
+      flown.pace = Pace{.uav = "uav1", .stages = {{.stage = "detect", .share = 1.0}}};
+      write(flown);
     }
   }
   std::string page() const { return campaign_page(all(), out_); }

@@ -12,7 +12,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 
-campaign::ScenarioResults point(std::vector<scenario::Setting> settings,
+campaign::ScenarioResults point(std::vector<campaign::Setting> settings,
                                 const std::vector<double>& times_s) {
   campaign::ScenarioResults scenario = sample_results({{"host", times_s}});
   scenario.swept_from = "turn";

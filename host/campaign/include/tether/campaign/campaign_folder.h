@@ -18,6 +18,8 @@ namespace tether::campaign {
 inline constexpr int kCampaignSchemaVersion = 1;
 inline constexpr std::string_view kCampaignFile = "campaign.json";
 
+using Setting = scenario::Setting;
+
 /// `campaign.json`.
 struct CampaignManifest {
   struct Entry {
@@ -28,7 +30,7 @@ struct CampaignManifest {
     std::vector<std::string> metrics;  ///< names
     /// Of a point of a sweep: the scenario without its settings, and these. Empty: none.
     std::string swept_from{};
-    std::vector<scenario::Setting> settings{};
+    std::vector<Setting> settings{};
 
     friend bool operator==(const Entry&, const Entry&) = default;
   };

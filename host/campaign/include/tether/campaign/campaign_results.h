@@ -29,7 +29,7 @@ struct ScenarioResults {
   std::vector<ConditionResults> conditions;
   /// As in CampaignManifest::Entry.
   std::string swept_from{};
-  std::vector<scenario::Setting> settings{};
+  std::vector<Setting> settings{};
 
   const ConditionResults* find_condition(std::string_view condition) const;
   /// Label, kind and unit of a metric, from any trial; nullptr if there is no trial.

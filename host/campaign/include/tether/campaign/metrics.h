@@ -25,6 +25,8 @@ struct MetricValue {
 
   /// Whether there is a value within its limits.
   bool is_met() const { return value && (!max || *value <= *max) && (!min || *value >= *min); }
+  /// As its kind says.
+  bool is_better_if_more() const;
 
   friend bool operator==(const MetricValue&, const MetricValue&) = default;
 };

@@ -17,6 +17,7 @@
 #include <tether/judge/judge.h>
 #include <tether/record/reader.h>
 #include <tether/scenario/scenario.h>
+#include <tether/timing/pace.h>
 
 /// The result of one trial and its file, `result.json` (docs/design.md section 5).
 namespace tether::campaign {
@@ -252,6 +253,9 @@ struct TrialResult {
   std::vector<judge::TaskSpan> tasks{};
   std::vector<judge::ClauseVerdict> clauses{};
   std::vector<UavEnergy> energy{};  ///< of each UAV with a model of energy
+  /// None: the run was not synchronised or failed, its programs reported no stages, or the result
+  /// is of an earlier version.
+  std::optional<timing::Pace> pace{};
   std::vector<SutResult> suts;
   SyncFigures sync;
   /// See copies.h; empty: there is no ground truth, or the result is of an earlier version.
@@ -294,7 +298,7 @@ TrialResult make_result(const scenario::Scenario& scenario, const scenario::Cond
                         const record::Record& record, const std::vector<TaskEnd>& task_ends);
 
 /// For a trial that ran but whose numbers cannot be trusted: it counts as failed for `reason`, and
-/// no metric keeps its value.
+/// no metric keeps its value, nor the pace.
 void invalidate(TrialResult& result, const std::string& reason);
 
 /// What counts the work of the condition's SUTs; without a program if nothing does.

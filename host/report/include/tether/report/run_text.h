@@ -10,7 +10,7 @@ namespace tether::report {
 
 /// What `tether run` prints of a run: the answer with its advice (verdict.h), the outcome, and a
 /// line for each metric, clause, UAV and circumstance. @param folder of the run: its record is
-/// named, and computing times are read from it, if it is there.
+/// named if it is there.
 std::string run_text(const campaign::TrialResult& result, const std::filesystem::path& folder,
                      Markup markup = Markup::kPlain);
 

@@ -77,7 +77,7 @@ std::vector<std::string> size_sentences(const SizeReport& report);
 /// What to do next; each one sentence.
 std::vector<std::string> size_advice(const SizeReport& report);
 /// The pace of the flight whose slowdown is nearest to the answer.
-PaceOrReason pace_near_answer(const SizeReport& report, const std::filesystem::path& folder);
+PaceOrReason pace_near_answer(const SizeReport& report);
 
 /// Success over slowdown with the flights and the boards, and below it the margin of each limited
 /// metric.

@@ -46,7 +46,7 @@ struct UavsReport {
 std::vector<sizing::UavLevel> uav_levels(const std::vector<UavsPoint>& points);
 /// Those of the report that were flown, in ascending order.
 std::vector<UavsLevel> levels_of(const UavsReport& report);
-PaceOrReason pace_at_limit(const UavsReport& report, const std::filesystem::path& folder);
+PaceOrReason pace_at_limit(const UavsReport& report);
 std::size_t flights_of(const UavsReport& report);
 /// Of these, copies of other ones with as many UAVs, which do not count.
 std::size_t copies_in(const UavsReport& report);

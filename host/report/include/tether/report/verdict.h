@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
@@ -11,12 +10,16 @@
 
 #include <tether/campaign/campaign_results.h>
 #include <tether/campaign/statistics.h>
-#include <tether/report/pace.h>
 #include <tether/report/table.h>
+#include <tether/timing/pace.h>
 
 /// Is this computer fast enough to fly that task? The answer as data, computed here alone, and its
 /// words, which terminal, Markdown, pages and JUnit share.
 namespace tether::report {
+
+using timing::BoardPace;
+using timing::Pace;
+using timing::Speed;
 
 /// The share of flights that must reach the goal, as of `tether size`.
 inline constexpr double kWantedSuccess = 0.9;
@@ -107,7 +110,7 @@ struct ConditionVerdict {
   /// What of the files is not simulated as written and can change the verdict, one line each.
   std::vector<std::string> left_out{};
   std::optional<Pace> pace{};
-  std::string unreadable{};  ///< why the pace is not known, of the first record; empty: it has none
+  std::string unknown_pace{};        ///< why it is not known; empty: there is none to know
   std::optional<MissReason> miss{};  ///< of the three rulings on a missed goal
   /// As in campaign::ThisRun, of the first flight.
   std::optional<campaign::Sizing> sizing{};
@@ -156,7 +159,7 @@ struct Advice {
 struct Verdict {
   std::string scenario;                       ///< without the settings of a sweep
   std::string point{};                        ///< of a sweep: "cpu_factor = 2"
-  std::vector<scenario::Setting> settings{};  ///< … as values
+  std::vector<campaign::Setting> settings{};  ///< … as values
   std::vector<ConditionVerdict> conditions;   ///< in the order of the campaign; not empty
   std::size_t lead = 0;          ///< the most urgent condition, with which the answer begins
   std::vector<Advice> advice{};  ///< what to do next; the most useful first
@@ -177,11 +180,16 @@ campaign::Interval exact_interval(std::size_t reached, std::size_t flown);
 Verdict verdict_of(const campaign::ScenarioResults& scenario,
                    const std::vector<std::optional<Pace>>& paces = {});
 
-/// One for each scenario. The pace of a condition is that of the first record of a flight that
-/// missed the goal or, if none did, of the first record.
-/// @param folder of the run or the campaign
-std::vector<Verdict> verdicts_of(const campaign::CampaignResults& results,
-                                 const std::filesystem::path& folder);
+/// One for each scenario. The pace of a condition is that of the first flight that missed the goal
+/// or, if none did, of the first flight.
+std::vector<Verdict> verdicts_of(const campaign::CampaignResults& results);
+
+/// The pace of a flight, or why it is not known: one line, empty if there is nothing to know.
+struct PaceOrReason {
+  std::optional<Pace> pace{};
+  std::string unknown{};
+};
+PaceOrReason pace_or_reason(const campaign::TrialResult& trial);
 
 /// A sentence.
 struct Answer {
@@ -197,7 +205,7 @@ std::optional<Answer> unseen_answer(const std::string& condition,
 /// busy the machine was, what those missed that did not reach the goal, and why no computing times
 /// are known (empty: they are).
 std::vector<Answer> answers_on_flights(std::span<const campaign::TrialResult* const> trials,
-                                       const std::string& unreadable);
+                                       const std::string& unknown_pace);
 /// The condition's ruling with its evidence.
 Answer answer_of(const ConditionVerdict& condition);
 /// The slowest computer of a fleet, over all flights of the condition. None: there are not several.

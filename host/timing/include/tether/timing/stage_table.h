@@ -18,6 +18,7 @@ struct StageRow {
   std::size_t count = 0;
   double median_s = 0.0, p95_s = 0.0, p99_s = 0.0, worst_s = 0.0;
   double share = 0.0;  ///< of all computing
+  friend bool operator==(const StageRow&, const StageRow&) = default;
 };
 
 /// The stages with the largest share first.

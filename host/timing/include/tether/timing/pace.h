@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <utility>
@@ -11,7 +10,7 @@
 #include <tether/record/reader.h>
 #include <tether/timing/stage_table.h>
 
-namespace tether::report {
+namespace tether::timing {
 
 /// What one of the computers of a fleet contributed to a run.
 struct BoardPace {
@@ -29,6 +28,8 @@ struct BoardPace {
   std::size_t slowest_in = 0;               ///< flights in which it was the slowest
   std::pair<double, double> p95_range_s{};  ///< least and largest of a flight
   std::pair<double, double> alone_range{};
+
+  friend bool operator==(const BoardPace&, const BoardPace&) = default;
 };
 
 /// What decides how fast the programs of a run compute: equal for runs on the same computers.
@@ -68,7 +69,7 @@ struct Speed {
 struct Pace {
   std::string uav{};
   std::uint64_t seed = 0;
-  std::vector<timing::StageRow> stages{};  ///< the largest share first
+  std::vector<StageRow> stages{};  ///< the largest share first
 
   // Of the camera that was read most often. If none was read twice: empty, 0 and none.
   std::string camera{};
@@ -101,20 +102,12 @@ struct Pace {
   bool keeps_up() const;
   /// Whether it reads fewer images, because computing one takes longer than the camera's period.
   bool is_too_slow_for_camera() const;
+
+  friend bool operator==(const Pace&, const Pace&) = default;
 };
 
 /// Of the SUT whose images cost most. None if the run was not synchronised (its computing
 /// times are not known), or has no interactions.
 std::optional<Pace> pace_of(const record::Record& record);
 
-/// Of a record on the disk. @throws Error(kBadFile), about the file, if it is missing, unreadable,
-/// or damaged.
-std::optional<Pace> read_pace(const std::filesystem::path& file);
-/// The same, or why it is not known: one line, empty if there is nothing to know.
-struct PaceOrReason {
-  std::optional<Pace> pace{};
-  std::string unreadable{};
-};
-PaceOrReason pace_or_reason(const std::filesystem::path& file);
-
-}  // namespace tether::report
+}  // namespace tether::timing

@@ -1,15 +1,13 @@
-#include "answers/board_pace.h"
+#include "board_pace.h"
 
 #include <algorithm>
 #include <map>
 
-#include <tether/base/error.h>
-#include <tether/report/pace.h>
-#include <tether/scenario/scenario.h>
 #include <tether/stats/sample_statistics.h>
+#include <tether/timing/pace.h>
 #include <tether/timing/timing.h>
 
-namespace tether::report {
+namespace tether::timing {
 namespace {
 
 constexpr double kNearlyEvery = 0.95;
@@ -50,7 +48,7 @@ bool is_image(const record::Interaction& entry, std::map<std::string, std::uint6
 }
 
 std::map<std::string, Intervals> intervals_of(const record::Record& record, const std::string& uav,
-                                              const timing::Run& run) {
+                                              const Run& run) {
   std::map<std::string, Intervals> cameras;
   for (const record::SensorInfo& info : record.header.sensors)
     if (info.uav == uav && info.kind.ends_with("camera") && cameras.try_emplace(info.name).second &&
@@ -82,9 +80,9 @@ std::map<std::string, Intervals> intervals_of(const record::Record& record, cons
 }
 
 Pace pace_of(const record::Record& record, const record::SutInfo& sut) {
-  timing::Timing timing;
-  timing.runs = {timing::run_of(record, sut)};
-  Pace pace{.uav = sut.uav, .seed = record.header.seed, .stages = timing::stage_rows(timing)};
+  Timing timing;
+  timing.runs = {run_of(record, sut)};
+  Pace pace{.uav = sut.uav, .seed = record.header.seed, .stages = stage_rows(timing)};
   const auto shares = [&](const record::SutInfo& other) {
     return other.board == sut.board && other.pinned_core == sut.pinned_core;
   };
@@ -207,18 +205,4 @@ std::optional<Pace> pace_of(const record::Record& record) {
   return found;
 }
 
-std::optional<Pace> read_pace(const std::filesystem::path& file) {
-  const record::Record record = record::read_record(file);
-  if (const std::string damage = record::describe_damage(record); !damage.empty())
-    throw Error(ErrorCode::kBadFile, {file.string()}, "the record is " + damage)
-        .about(file.string());
-  return pace_of(record);
-}
-
-PaceOrReason pace_or_reason(const std::filesystem::path& file) try {
-  return {read_pace(file), ""};
-} catch (const Error& error) {
-  return {std::nullopt, error.what()};
-}
-
-}  // namespace tether::report
+}  // namespace tether::timing
