@@ -137,6 +137,8 @@ class FieldReader {
       value = json_.texts(name);
     } else if constexpr (std::is_same_v<Value, std::vector<double>>) {
       value = json_.numbers(name);
+    } else if constexpr (std::is_same_v<Value, std::vector<std::uint64_t>>) {
+      value = json_.counts(name);
     } else if constexpr (kIsList<Value>) {
       value.clear();
       for (const JsonReader& element : json_.objects(name)) {
@@ -195,5 +197,23 @@ class FieldReader {
  private:
   JsonReader json_;
 };
+
+/// A file: an object that begins with its schema.
+std::string text_of(const auto& whole, int schema) {
+  FieldWriter io;
+  io("schema", schema);
+  fields(io, whole);
+  return io.json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+template <class Whole>
+Whole read_text(const std::string& text, const std::filesystem::path& file, int newest_schema) {
+  const Json document = parse_json(text, file);
+  const JsonReader json(document, file);
+  json.require_schema(newest_schema);
+  Whole whole;
+  const FieldReader io(json);
+  fields(io, whole);
+  return whole;
+}
 
 }  // namespace tether::campaign

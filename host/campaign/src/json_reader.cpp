@@ -61,11 +61,6 @@ double JsonReader::number(std::string_view key) const {
   return member(key, &Json::is_number, "a number").get<double>();
 }
 
-std::optional<double> JsonReader::optional_number(std::string_view key) const {
-  if (member(key).is_null()) return std::nullopt;
-  return number(key);
-}
-
 std::uint64_t JsonReader::count(std::string_view key) const {
   return member(key, &Json::is_number_unsigned, "a non-negative integer").get<std::uint64_t>();
 }

@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -32,7 +31,6 @@ class JsonReader {
   std::string text(std::string_view key) const;
   bool boolean(std::string_view key) const;
   double number(std::string_view key) const;
-  std::optional<double> optional_number(std::string_view key) const;  ///< null: none
   std::uint64_t count(std::string_view key) const;
   Duration seconds(std::string_view key) const;
   JsonReader object(std::string_view key) const;

@@ -295,20 +295,11 @@ const MetricValue* TrialResult::find_metric(std::string_view metric) const {
 }
 
 std::string to_json(const TrialResult& result) {
-  FieldWriter io;
-  io("schema", kResultSchemaVersion);
-  fields(io, result);
-  return io.json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return text_of(result, kResultSchemaVersion);
 }
 
 TrialResult result_from_json(const std::string& text, const std::filesystem::path& file) {
-  const Json document = parse_json(text, file);
-  const JsonReader json(document, file);
-  json.require_schema(kResultSchemaVersion);
-  TrialResult result;
-  const FieldReader io(json);
-  fields(io, result);
-  return result;
+  return read_text<TrialResult>(text, file, kResultSchemaVersion);
 }
 
 void write_result(const std::filesystem::path& folder, const TrialResult& result) {

@@ -2,7 +2,7 @@
 #include "json/json_metadata.h"
 #include "json/json_text.h"
 #include "json/members.h"
-#include "messages_of.h"
+#include "kinds.h"
 
 #include <cmath>
 #include <limits>
@@ -61,7 +61,7 @@ Kind as_read(Kind message) {
 Annotation as_read(const Annotation& message) {
   std::string text;
   append_json(text, message);
-  return annotation_from_json(text);
+  return from_json<Annotation>(text);
 }
 
 }  // namespace
@@ -72,8 +72,7 @@ void RecordInMemory::write(const Header& header) {
 
 void RecordInMemory::write(SimTime at, const Message& message) {
   const auto keep = [&]<class Kind>(const Kind& one) {
-    if constexpr (!std::is_same_v<Kind, Image> && !std::is_same_v<Kind, RawImage>)
-      messages_of<Kind>(record_).push_back({at, order_, as_read(one)});
+    if constexpr (!kIsImage<Kind>) messages_of<Kind>(record_).push_back({at, order_, as_read(one)});
   };
   std::visit(keep, message);
   ++order_;

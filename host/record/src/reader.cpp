@@ -1,9 +1,8 @@
 #include "damage.h"
 #include "json/json_messages.h"
 #include "json/json_metadata.h"
-#include "json/schemas.h"
+#include "kinds.h"
 #include "mcap/mcap_reader.h"
-#include "messages_of.h"
 
 #include <algorithm>
 #include <limits>
@@ -85,26 +84,19 @@ class RecordBuilder final : public McapVisitor {
   }
 
   Appender appender(std::string_view schema) const {
-    if (schema == kInteractionSchema.name) return &RecordBuilder::append<interaction_from_json>;
-    if (schema == kCommandEffectSchema.name)
-      return &RecordBuilder::append<command_effect_from_json>;
-    if (schema == kGroundTruthSchema.name) return &RecordBuilder::append<ground_truth_from_json>;
-    if (schema == kAnnotationSchema.name) return &RecordBuilder::append<annotation_from_json>;
-    if (schema == kStopSchema.name) return &RecordBuilder::append<stop_from_json>;
-    if (schema == kContactSchema.name) return &RecordBuilder::append<contact_from_json>;
-    if (schema == kBatterySchema.name) return &RecordBuilder::append<battery_from_json>;
-    if (schema == kRadioMessageSchema.name) return &RecordBuilder::append<radio_message_from_json>;
-    if (schema == kCompressedImageSchema.name)
-      return options_.images ? &RecordBuilder::append<image_from_json> : &RecordBuilder::skip;
-    if (schema == kRawImageSchema.name)
-      return options_.images ? &RecordBuilder::append<raw_image_from_json> : &RecordBuilder::skip;
-    return nullptr;
+    Appender found = nullptr;
+    const auto take = [&]<class Kind>(const KindInfo<Kind>& kind) {
+      if (kind.schema.name != schema) return;
+      const bool is_wanted = options_.images || !kIsImage<Kind>;
+      found = is_wanted ? &RecordBuilder::append<Kind> : &RecordBuilder::skip;
+    };
+    std::apply([&](const auto&... kinds) { (take(kinds), ...); }, kKinds);
+    return found;
   }
 
-  template <auto parse>
+  template <class Kind>
   void append(SimTime at, std::string_view json) {
-    using Kind = decltype(parse(json));
-    messages_of<Kind>(record_).push_back({at, order_, parse(json)});
+    messages_of<Kind>(record_).push_back({at, order_, from_json<Kind>(json)});
   }
   void skip(SimTime, std::string_view) {}
 

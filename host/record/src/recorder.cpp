@@ -1,12 +1,11 @@
 // Puts messages into an MCAP file: Channels makes a channel for each topic when its first message
 // comes, and McapWriter packs the messages into chunks.
 
-#include "json/json_members.h"
 #include "json/json_messages.h"
 #include "json/json_metadata.h"
 #include "json/json_text.h"
 #include "json/members.h"
-#include "json/schemas.h"
+#include "kinds.h"
 #include "mcap/mcap_writer.h"
 
 #include <algorithm>
@@ -78,7 +77,7 @@ class McapRecorder final : public Recorder {
   }
 
   void write(SimTime at, const Message& message) override {
-    std::visit([&](const auto& one) { put(at, one); }, message);
+    std::visit([&](const auto& one) { put(at, one, message.index()); }, message);
   }
 
   void flush() override { mcap_.flush(); }
@@ -92,40 +91,26 @@ class McapRecorder final : public Recorder {
   }
 
  private:
-  void put(SimTime at, const Interaction& message) {
-    write_json(interactions_.of("/interactions", {}), at, message);
-  }
-  void put(SimTime at, const CommandEffect& message) {
-    write_json(commands_.of("/commands", message.uav), at, message);
-  }
-  void put(SimTime at, const GroundTruth& message) {
-    write_json(ground_truth_.of("/ground_truth", message.uav), at, message);
-    append_frame_transform(begin(transforms_.of("/tf", {}), at), message);
-    mcap_.end_message();
-  }
-  void put(SimTime at, const Annotation& message) {
-    write_json(annotations_.of("/task", message.uav), at, message);
-  }
-  void put(SimTime at, const Stop& message) {
-    write_json(stops_.of("/stops", message.uav), at, message);
-  }
-  void put(SimTime at, const Contact& message) {
-    write_json(contacts_.of("/contacts", message.uav), at, message);
-  }
-  void put(SimTime at, const Battery& message) {
-    write_json(batteries_.of("/battery", message.uav), at, message);
-  }
-  void put(SimTime at, const RadioMessage& message) {
-    write_json(radio_.of("/radio", {}), at, message);
-  }
-  void put(SimTime at, const Image& message) {
-    write_json(images_.of("/images", message.uav, message.sensor), at, message);
-  }
-  void put(SimTime at, const RawImage& message) {
-    const bool is_depth = std::holds_alternative<std::vector<float>>(message.pixels);
-    Channels& channels = is_depth ? depths_ : labels_;
-    write_json(channels.of(is_depth ? "/depth" : "/labels", message.uav, message.sensor), at,
-               message);
+  template <class Kind>
+  void put(SimTime at, const Kind& message, std::size_t kind) {
+    Channels& own = channels_[kind];
+    const std::string_view topic = std::get<KindInfo<Kind>>(kKinds).topic;
+    if constexpr (std::is_same_v<Kind, Interaction> || std::is_same_v<Kind, RadioMessage>) {
+      write_json(own.of(topic, {}), at, message);
+    } else if constexpr (std::is_same_v<Kind, Image>) {
+      write_json(own.of(topic, message.uav, message.sensor), at, message);
+    } else if constexpr (std::is_same_v<Kind, RawImage>) {
+      const bool is_depth = std::holds_alternative<std::vector<float>>(message.pixels);
+      write_json(
+          (is_depth ? own : labels_).of(is_depth ? topic : "/labels", message.uav, message.sensor),
+          at, message);
+    } else {
+      write_json(own.of(topic, message.uav), at, message);
+    }
+    if constexpr (std::is_same_v<Kind, GroundTruth>) {
+      append_frame_transform(begin(transforms_.of("/tf", {}), at), message);
+      mcap_.end_message();
+    }
   }
 
   std::string& begin(std::uint16_t channel, SimTime at) {
@@ -138,18 +123,11 @@ class McapRecorder final : public Recorder {
   }
 
   McapWriter mcap_;
-  Channels interactions_{mcap_, kInteractionSchema};
-  Channels commands_{mcap_, kCommandEffectSchema};
-  Channels ground_truth_{mcap_, kGroundTruthSchema};
-  Channels transforms_{mcap_, kFrameTransformSchema};
-  Channels annotations_{mcap_, kAnnotationSchema};
-  Channels stops_{mcap_, kStopSchema};
-  Channels contacts_{mcap_, kContactSchema};
-  Channels batteries_{mcap_, kBatterySchema};
-  Channels radio_{mcap_, kRadioMessageSchema};
-  Channels images_{mcap_, kCompressedImageSchema};
-  Channels depths_{mcap_, kRawImageSchema};
+  std::vector<Channels> channels_ = std::apply(
+      [this](const auto&... kinds) { return std::vector{Channels(mcap_, kinds.schema)...}; },
+      kKinds);
   Channels labels_{mcap_, kRawImageSchema};
+  Channels transforms_{mcap_, kFrameTransformSchema};
   bool finished_ = false;
 };
 

@@ -2,7 +2,6 @@
 
 #include "damage.h"
 #include "json/json_fields.h"
-#include "json/json_messages.h"
 #include "json/json_text.h"
 #include "json/members.h"
 
@@ -12,6 +11,12 @@
 
 /// The two directions of `members` for JSON objects.
 namespace tether::record {
+
+/// Which members of a message to write; `schemas.cpp` describes the whole.
+struct JsonParts {
+  bool wall = true;      ///< host clock readings, under "wall"
+  bool arrivals = true;  ///< ST at arrival and the lag
+};
 
 template <class Value>
 concept Time = requires(const Value& value) {

@@ -2,7 +2,6 @@
 
 #include "damage.h"
 #include "json/json_fields.h"
-#include "json/json_members.h"
 #include "json/json_text.h"
 #include "json/members.h"
 
@@ -91,31 +90,6 @@ void decode_pixels(const std::vector<std::uint8_t>& bytes, const RawImage& image
 
 }  // namespace
 
-void append_json(std::string& out, const Interaction& message, JsonParts parts) {
-  append_members(out, message, parts);
-}
-void append_json(std::string& out, const CommandEffect& message) {
-  append_members(out, message);
-}
-void append_json(std::string& out, const GroundTruth& message) {
-  append_members(out, message);
-}
-void append_json(std::string& out, const Stop& message, JsonParts parts) {
-  append_members(out, message, parts);
-}
-
-void append_json(std::string& out, const Contact& message) {
-  append_members(out, message);
-}
-
-void append_json(std::string& out, const Battery& message) {
-  append_members(out, message);
-}
-
-void append_json(std::string& out, const RadioMessage& message) {
-  append_members(out, message);
-}
-
 // The JSON of the SUT's is written as it is if it is an object, and as a string if it is not.
 void append_json(std::string& out, const Annotation& message) {
   MemberWriter writer(out);
@@ -179,46 +153,24 @@ void append_frame_transform(std::string& out, const GroundTruth& message) {
   object.close();
 }
 
-Interaction interaction_from_json(std::string_view text) {
-  return read_members<Interaction>(parse_object(text));
-}
-CommandEffect command_effect_from_json(std::string_view text) {
-  return read_members<CommandEffect>(parse_object(text));
-}
-GroundTruth ground_truth_from_json(std::string_view text) {
-  return read_members<GroundTruth>(parse_object(text));
-}
-Stop stop_from_json(std::string_view text) {
-  return read_members<Stop>(parse_object(text));
-}
-
-Contact contact_from_json(std::string_view text) {
-  return read_members<Contact>(parse_object(text));
-}
-
-Battery battery_from_json(std::string_view text) {
-  return read_members<Battery>(parse_object(text));
-}
-
-RadioMessage radio_message_from_json(std::string_view text) {
-  return read_members<RadioMessage>(parse_object(text));
-}
-
-Annotation annotation_from_json(std::string_view text) {
+template <>
+Annotation from_json<Annotation>(std::string_view text) {
   const Json json = parse_object(text);
   Annotation message = read_members<Annotation>(json);
   message.json = member(json, "data").dump();
   return message;
 }
 
-Image image_from_json(std::string_view text) {
+template <>
+Image from_json<Image>(std::string_view text) {
   const Json json = parse_object(text);
   Image message = picture_of_sensor<Image>(json);
   message.png = data_member(json);
   return message;
 }
 
-RawImage raw_image_from_json(std::string_view text) {
+template <>
+RawImage from_json<RawImage>(std::string_view text) {
   const Json json = parse_object(text);
   RawImage message = picture_of_sensor<RawImage>(json);
   message.width_px = static_cast<int>(integer_member(json, "width", 1, kLargestSide_px));

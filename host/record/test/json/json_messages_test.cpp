@@ -25,22 +25,17 @@ std::string golden(const std::string& name) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-template <class Message>
-std::string json_of(const Message& message, JsonParts parts = {}) {
+template <class... Parts>
+std::string json_of(const auto& message, Parts... parts) {
   std::string out;
-  if constexpr (requires { append_json(out, message, parts); }) {
-    append_json(out, message, parts);
-  } else {
-    append_json(out, message);
-  }
+  append_json(out, message, parts...);
   return out;
 }
 
 template <class Message>
-void check_form(std::string& texts, const Message& message, Message (*read)(std::string_view),
-                const Schema& schema) {
+void check_form(std::string& texts, const Message& message, const Schema& schema) {
   const std::string text = json_of(message);
-  EXPECT_EQ(json_of(read(text)), text);
+  EXPECT_EQ(json_of(from_json<Message>(text)), text);
   texts += text + "\n";
   const json described = json::parse(schema.json), written = json::parse(text);
   EXPECT_EQ(described.at("title"), schema.name);
@@ -76,8 +71,8 @@ TEST(JsonMessages, RawImagesKeepEveryNumber) {
   labels.pixels = std::vector<std::uint16_t>{0, 65535};
   std::string texts;
   for (const RawImage& image : {depths, labels}) {
-    check_form(texts, image, raw_image_from_json, kRawImageSchema);
-    const RawImage read = raw_image_from_json(json_of(image));
+    check_form(texts, image, kRawImageSchema);
+    const RawImage read = from_json<RawImage>(json_of(image));
     EXPECT_EQ(read.pixels, image.pixels);
     EXPECT_EQ(read.at, image.at);
   }
@@ -89,7 +84,7 @@ TEST(JsonMessages, RawImagesKeepEveryNumber) {
                                       {"data", json("?")}}) {
     json damaged = whole;
     damaged[member] = value;
-    EXPECT_THROW(raw_image_from_json(damaged.dump()), Damage) << member;
+    EXPECT_THROW(from_json<RawImage>(damaged.dump()), Damage) << member;
   }
 }
 
@@ -97,14 +92,14 @@ TEST(JsonMessages, ReadsOfImagesHaveTheAnchorsThatAreSeen) {
   Interaction read = sensor_interaction();
   read.seen_anchors.emplace();
   std::string texts;
-  check_form(texts, read, interaction_from_json, kInteractionSchema);
+  check_form(texts, read, kInteractionSchema);
   read.seen_anchors = {{"box", 1, 2, 3, 4, 5}, {"ball", 0, 0, 0, 0, 1}};
-  check_form(texts, read, interaction_from_json, kInteractionSchema);
-  EXPECT_EQ(interaction_from_json(json_of(read)).seen_anchors, read.seen_anchors);
+  check_form(texts, read, kInteractionSchema);
+  EXPECT_EQ(from_json<Interaction>(json_of(read)).seen_anchors, read.seen_anchors);
   for (const char* wrong : {R"("no list")", "[3]", R"([{"anchor":"box"}])"}) {
     json damaged = json::parse(json_of(read));
     damaged["seen_anchors"] = json::parse(wrong);
-    EXPECT_THROW(interaction_from_json(damaged.dump()), Damage) << wrong;
+    EXPECT_THROW(from_json<Interaction>(damaged.dump()), Damage) << wrong;
   }
 }
 
@@ -114,19 +109,19 @@ TEST(JsonMessages, FormIsStable) {
   std::string texts;
   for (const Interaction& message :
        {sensor_interaction(), command_interaction(), sleep_interaction(), vain_interaction()})
-    check_form(texts, message, interaction_from_json, kInteractionSchema);
-  check_form(texts, stop(), stop_from_json, kStopSchema);
-  check_form(texts, contact(), contact_from_json, kContactSchema);
-  check_form(texts, command_effect(), command_effect_from_json, kCommandEffectSchema);
-  check_form(texts, ground_truth(), ground_truth_from_json, kGroundTruthSchema);
-  check_form(texts, annotation(), annotation_from_json, kAnnotationSchema);
-  check_form(texts, image(), image_from_json, kCompressedImageSchema);
-  check_form(texts, battery(), battery_from_json, kBatterySchema);
-  check_form(texts, receive_interaction(), interaction_from_json, kInteractionSchema);
-  check_form(texts, battery_interaction(), interaction_from_json, kInteractionSchema);
-  check_form(texts, radio_message(), radio_message_from_json, kRadioMessageSchema);
-  texts += json_of(sensor_interaction(), {.wall = false, .arrivals = false}) + "\n";
-  texts += json_of(stop(), {.wall = false}) + "\n";
+    check_form(texts, message, kInteractionSchema);
+  check_form(texts, stop(), kStopSchema);
+  check_form(texts, contact(), kContactSchema);
+  check_form(texts, command_effect(), kCommandEffectSchema);
+  check_form(texts, ground_truth(), kGroundTruthSchema);
+  check_form(texts, annotation(), kAnnotationSchema);
+  check_form(texts, image(), kCompressedImageSchema);
+  check_form(texts, battery(), kBatterySchema);
+  check_form(texts, receive_interaction(), kInteractionSchema);
+  check_form(texts, battery_interaction(), kInteractionSchema);
+  check_form(texts, radio_message(), kRadioMessageSchema);
+  texts += json_of(sensor_interaction(), JsonParts{.wall = false, .arrivals = false}) + "\n";
+  texts += json_of(stop(), JsonParts{.wall = false}) + "\n";
   append_frame_transform(texts, ground_truth(1234));
   EXPECT_EQ(texts + "\n", golden("messages.txt"));
 }
@@ -134,7 +129,7 @@ TEST(JsonMessages, FormIsStable) {
 TEST(JsonMessages, NotFiniteIsNullAndReadAsNan) {
   CommandEffect message = command_effect();
   message.vx_H_m_s = std::numeric_limits<double>::infinity();
-  EXPECT_TRUE(std::isnan(command_effect_from_json(json_of(message)).vx_H_m_s));
+  EXPECT_TRUE(std::isnan(from_json<CommandEffect>(json_of(message)).vx_H_m_s));
 }
 
 TEST(JsonMessages, AnnotationThatIsNotAnObjectBecomesText) {
@@ -145,7 +140,7 @@ TEST(JsonMessages, AnnotationThatIsNotAnObjectBecomesText) {
     Annotation message = annotation();
     message.json = text;
     EXPECT_TRUE(json::parse(json_of(message)).at("data").at("text").is_string());
-    EXPECT_NO_THROW(annotation_from_json(json_of(message)));
+    EXPECT_NO_THROW(from_json<Annotation>(json_of(message)));
   }
 }
 
@@ -166,9 +161,9 @@ TEST(JsonMessages, MissingAndWrongMembersAreNamed) {
   for (const std::string& name : names) {
     json changed = whole;
     changed.erase(name);
-    EXPECT_EQ(damaged_name([&] { interaction_from_json(changed.dump()); }), name);
+    EXPECT_EQ(damaged_name([&] { from_json<Interaction>(changed.dump()); }), name);
     changed[name] = json::array();
-    EXPECT_THROW(interaction_from_json(changed.dump()), Damage) << name;
+    EXPECT_THROW(from_json<Interaction>(changed.dump()), Damage) << name;
   }
 }
 
@@ -176,7 +171,7 @@ TEST(JsonMessages, RefusesHostileText) {
   for (const std::string& text :
        {std::string(), std::string("[]"), std::string("{\"uav\":1e999}"), std::string(100'000, '['),
         std::string("{\"uav\":\"\\"), std::string("\"\\")}) {
-    EXPECT_THROW(interaction_from_json(text), Damage) << text.substr(0, 20);
+    EXPECT_THROW(from_json<Interaction>(text), Damage) << text.substr(0, 20);
   }
 }
 
