@@ -5,6 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <tether/base/json_depth.h>
+
 namespace tether::link {
 namespace {
 
@@ -32,6 +34,15 @@ struct FaultHandler {
   }
 };
 
+/// The text from a position on, shortened and printable.
+std::string excerpt(const std::string& text, std::size_t at) {
+  constexpr std::size_t kLength = 24;
+  std::string found = text.substr(at, kLength);
+  for (char& c : found)
+    if (c < ' ' || c > '~') c = '?';
+  return found.empty() ? "its end" : "\"" + found + "\"";
+}
+
 }  // namespace
 
 std::optional<std::size_t> fault_of_json_object(std::string_view text) {
@@ -44,6 +55,15 @@ std::optional<std::size_t> fault_of_json_object(std::string_view text) {
     return handler.bytes_read - 1;
   if (before_zero.size() < text.size()) return before_zero.size();
   return std::nullopt;
+}
+
+std::string complaint_about_json(const std::string& text) {
+  if (json_depth(text) > kMaxSutJsonDepth)
+    return "is nested deeper than " + std::to_string(kMaxSutJsonDepth) + " levels";
+  const auto fault = fault_of_json_object(text);
+  if (!fault) return "";
+  return "is not a JSON object: fault at byte " + std::to_string(*fault) + ", " +
+         excerpt(text, *fault);
 }
 
 }  // namespace tether::link

@@ -106,7 +106,7 @@ TEST(Validate, Samples) {
   expect({"range_m", reply_with(uav::RangeSample{SimTime{}, 0, kNan})});
   expect({"", reply_with(uav::ImuSample{})});
   expect({"specific_force", reply_with(uav::ImuSample{SimTime{}, 0, {}, {0, kInf, 0}, {}})});
-  expect({"q_WS", reply_with(uav::ImuSample{SimTime{}, 0, {}, {}, {0, 0, 0, 0}})});
+  expect({"q_ws", reply_with(uav::ImuSample{SimTime{}, 0, {}, {}, {0, 0, 0, 0}})});
   expect({"sampled_at", reply_with(uav::RangeSample{from_ns<SimTime>(-1), 0, 1.0})});
 }
 
@@ -115,7 +115,7 @@ TEST(Validate, Catalogue) {
   expect({"", welcome_with({"camera", {}, 30.0, camera})});
   expect({"'camera': rate_hz", welcome_with({"camera", {}, -1.0, camera})});
   expect({"name", welcome_with({"", {}, 30.0, camera})});
-  expect({"orientation", welcome_with({"camera", {{}, {2, 0, 0, 0}}, 30.0, camera})});
+  expect({"x_bs", welcome_with({"camera", {{}, {2, 0, 0, 0}}, 30.0, camera})});
   expect({"focal length", welcome_with({"camera", {}, 1.0, uav::CameraProperties{{1, 1}}})});
   for (const auto& [what, properties] :
        {std::pair{"min_m", uav::CameraProperties{camera.model, uav::CameraKind::kDepth, 2.0, 1.0}},

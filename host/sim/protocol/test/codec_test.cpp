@@ -1,4 +1,3 @@
-#include "message_fields.h"
 #include "random_message.h"
 
 #include <gtest/gtest.h>
@@ -8,6 +7,8 @@
 namespace tether::sim::protocol {
 namespace {
 
+// Encoding what was decoded gives the same bytes: no field was lost. That none is left out is in
+// schema_test.cpp.
 TEST(Codec, EveryFieldOfEveryMessageArrives) {
   Encoder encoder;
   for (std::uint64_t i = 0; i < 2000; ++i) {
@@ -15,13 +16,11 @@ TEST(Codec, EveryFieldOfEveryMessageArrives) {
     const auto request_frame = frame_of(encoder, request);
     const auto decoded_request = decode_request(request_frame);
     ASSERT_TRUE(decoded_request.ok()) << decoded_request.failure().message;
-    ASSERT_EQ(Fields(*decoded_request), Fields(request)) << i;
     ASSERT_EQ(frame_of(encoder, *decoded_request), request_frame);
     const Reply reply = RandomMessage(i).reply();
     const auto reply_frame = frame_of(encoder, reply);
     const auto decoded_reply = decode_reply(reply_frame);
     ASSERT_TRUE(decoded_reply.ok()) << decoded_reply.failure().message;
-    ASSERT_EQ(Fields(*decoded_reply), Fields(reply)) << i;
     ASSERT_EQ(frame_of(encoder, *decoded_reply), reply_frame);
   }
 }

@@ -82,16 +82,17 @@ TEST(Validate, OpenIsSane) {
 
 TEST(Validate, UavsAreSane) {
   expect_refused<Request, Open>(
-      good_open(), {{"name", [](Open& o) { o.uavs[0].name.clear(); }},
-                    {"sdf", [](Open& o) { o.uavs[0].sdf = std::string(kMaxSdfBytes + 1, ' '); }},
-                    {"X_WB", [](Open& o) { o.uavs[0].X_WB.p.x = kNaN; }},
-                    {"X_WB", [](Open& o) { o.uavs[0].X_WB.q = kNotUnit; }},
-                    {"mass_kg", [](Open& o) { o.uavs[0].airframe.mass_kg = 0.0; }},
-                    {"inertia_kg_m2", [](Open& o) { o.uavs[0].airframe.inertia_kg_m2.z = kInf; }},
-                    {"rotors", [](Open& o) { o.uavs[0].airframe.rotors.clear(); }},
-                    {"rotors", [](Open& o) { o.uavs[0].airframe.rotors.resize(9); }},
-                    {"rotors", [](Open& o) { o.uavs[0].airframe.rotors[0].direction = 0; }},
-                    {"airframe", [](Open& o) { o.uavs[0].airframe.time_constant_up_s = kNaN; }}});
+      good_open(),
+      {{"name", [](Open& o) { o.uavs[0].name.clear(); }},
+       {"sdf", [](Open& o) { o.uavs[0].sdf = std::string(kMaxSdfBytes + 1, ' '); }},
+       {"x_wb", [](Open& o) { o.uavs[0].X_WB.p.x = kNaN; }},
+       {"x_wb", [](Open& o) { o.uavs[0].X_WB.q = kNotUnit; }},
+       {"mass_kg", [](Open& o) { o.uavs[0].airframe.mass_kg = 0.0; }},
+       {"inertia_kg_m2", [](Open& o) { o.uavs[0].airframe.inertia_kg_m2.z = kInf; }},
+       {"rotors", [](Open& o) { o.uavs[0].airframe.rotors.clear(); }},
+       {"rotors", [](Open& o) { o.uavs[0].airframe.rotors.resize(9); }},
+       {"rotors", [](Open& o) { o.uavs[0].airframe.rotors[0].direction = 0; }},
+       {"time_constant_up_s", [](Open& o) { o.uavs[0].airframe.time_constant_up_s = kNaN; }}});
 }
 
 TEST(Validate, AdvancesAreSane) {
@@ -106,13 +107,13 @@ TEST(Validate, AdvancesAreSane) {
 
 TEST(Validate, RaysAreSane) {
   expect_refused<Request, CastRays>(good_rays(),
-                                    {{"X_WB", [](CastRays& c) { c.X_WB[0].q = kNotUnit; }},
-                                     {"X_WB", [](CastRays& c) { c.X_WB.resize(kMaxBodies + 1); }},
+                                    {{"x_wb", [](CastRays& c) { c.X_WB[0].q = kNotUnit; }},
+                                     {"x_wb", [](CastRays& c) { c.X_WB.resize(kMaxBodies + 1); }},
                                      {"carrier", [](CastRays& c) { c.carrier = 1; }},
-                                     {"X_WS", [](CastRays& c) { c.X_WS.p.z = kInf; }},
-                                     {"rays_S", [](CastRays& c) { c.rays_S.clear(); }},
-                                     {"rays_S", [](CastRays& c) { c.rays_S[0].y = 0.1; }},
-                                     {"rays_S", [](CastRays& c) { c.rays_S[0].x = kNaN; }},
+                                     {"x_ws", [](CastRays& c) { c.X_WS.p.z = kInf; }},
+                                     {"rays_s", [](CastRays& c) { c.rays_S.clear(); }},
+                                     {"rays_s", [](CastRays& c) { c.rays_S[0].y = 0.1; }},
+                                     {"rays_s", [](CastRays& c) { c.rays_S[0].x = kNaN; }},
                                      {"max_m", [](CastRays& c) { c.max_m = 0.0; }}});
 }
 
@@ -120,14 +121,14 @@ TEST(Validate, RendersAreSane) {
   expect_refused<Request, Render>(
       good_render(), {{"width_px", [](Render& r) { r.camera.width_px = 0; }},
                       {"width_px", [](Render& r) { r.camera.height_px = kMaxSidePx + 1; }},
-                      {"fx_px", [](Render& r) { r.camera.fx_px = kNaN; }},
+                      {"focal_px", [](Render& r) { r.camera.fx_px = kNaN; }},
                       {"camera", [](Render& r) { r.camera.fy_px += 1.0; }},
                       {"camera", [](Render& r) { r.camera.k1 = 0.1; }},
                       {"cx_px", [](Render& r) { r.camera.cx_px = kInf; }},
                       {"near_m", [](Render& r) { r.near_m = 0.0; }},
                       {"far_m", [](Render& r) { r.far_m = r.near_m; }},
-                      {"X_WS", [](Render& r) { r.X_WS.q.w = 0.0; }},
-                      {"X_WB", [](Render& r) { r.X_WB[0].p.y = kNaN; }},
+                      {"x_ws", [](Render& r) { r.X_WS.q.w = 0.0; }},
+                      {"x_wb", [](Render& r) { r.X_WB[0].p.y = kNaN; }},
                       {"hidden", [](Render& r) { r.hidden = 5; }}});
 }
 

@@ -7,6 +7,8 @@
 
 #include <tether/base/result.h>
 #include <tether/link/messages.h>
+#include <tether/wire/fields.h>
+#include <tether/wire/frame_pieces.h>
 
 /// Frames: a little-endian uint32 length, then that many bytes of FlatBuffer (size-prefixed, root
 /// `Envelope` of `schema/link.fbs`).
@@ -22,16 +24,13 @@ inline constexpr std::uint32_t kMaxRequestBytes = 1u << 20;
 inline constexpr std::uint32_t kMaxHelloBytes = 32u << 10;
 
 /// Longest name, token or topic [bytes].
-inline constexpr std::size_t kMaxNameBytes = 256;
+using uav::kMaxNameBytes;
 /// Longest text for a person: a refusal's message, an outcome [bytes].
 inline constexpr std::size_t kMaxTextBytes = 4096;
 /// Longest JSON text: details of an outcome, an annotation [bytes]. Nested no deeper than
 /// kMaxSutJsonDepth.
 inline constexpr std::size_t kMaxJsonBytes = 1000u << 10;
-/// Most sensors, and most anchors, of a catalogue.
-inline constexpr std::size_t kMaxCatalogueEntries = 1024;
-/// Most models whose names the properties of a segmentation camera have: its labels are 16 bits.
-inline constexpr std::size_t kMaxModels = 65535;
+using uav::kMaxCatalogueEntries;
 /// Longest build id [digits].
 inline constexpr std::size_t kMaxBuildIdBytes = 64;
 /// Most parts of a build, and the most bytes of their names and values. The frame of a Hello has
@@ -40,8 +39,7 @@ inline constexpr std::size_t kMaxBuildParts = 256;
 inline constexpr std::size_t kMaxBuildBytes = 20u << 10;
 /// Most stages of a message.
 inline constexpr std::size_t kMaxStages = 256;
-/// Every timestamp t has 0 ≤ t < this (146 years), so that sums of two cannot overflow [ns].
-inline constexpr std::int64_t kMaxTimestampNs = std::int64_t{1} << 62;
+using wire::kMaxTimestampNs;
 
 /// Checks the values of a message: enumerations in range, numbers finite (a range may be ±inf),
 /// timestamps, texts and lists within the limits above, images of width × height × 3 bytes, JSON
@@ -49,15 +47,8 @@ inline constexpr std::int64_t kMaxTimestampNs = std::int64_t{1} << 62;
 /// version of a Hello may be any.
 Status validate(const Message& message);
 
-/// A frame in up to three consecutive pieces. `image` is the message's own pixel buffer, so that an
-/// image is sent without a copy; it is empty for messages without an image.
-struct FramePieces {
-  std::span<const std::uint8_t> head;
-  std::span<const std::uint8_t> image;
-  std::span<const std::uint8_t> tail;
-
-  std::size_t size() const { return head.size() + image.size() + tail.size(); }
-};
+/// A frame in pieces, of which `image` is the pixels of the message's image.
+using wire::FramePieces;
 
 /// Serialises messages into whole frames (length included). It reuses its buffer: the messages of a
 /// flight (Request, Reply, Progress, Due) allocate nothing once it is large enough. Not

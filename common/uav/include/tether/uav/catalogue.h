@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -12,6 +13,13 @@
 /// What a SUT knows of its UAV and the world: the sensors, and the anchors "known in advance with
 /// some useful properties" (paper, Section III). Positions are not included: the SUT measures them.
 namespace tether::uav {
+
+/// Longest name in a catalogue [bytes].
+inline constexpr std::size_t kMaxNameBytes = 256;
+/// Most sensors, and most anchors, of a catalogue.
+inline constexpr std::size_t kMaxCatalogueEntries = 1024;
+/// Most models whose names the properties of a segmentation camera have: its labels are 16 bits.
+inline constexpr std::size_t kMaxModels = 65535;
 
 enum class SensorKind { kCamera, kImu, kRange };
 std::string_view name(SensorKind kind);

@@ -6,8 +6,8 @@
 #include <span>
 
 #include <tether/base/result.h>
-#include <tether/link/codec.h>
 #include <tether/sim_protocol/messages.h>
+#include <tether/wire/frame_pieces.h>
 
 /// Frames: a little-endian uint32 length, then that many bytes of FlatBuffer (size-prefixed, root
 /// `Envelope` of `schema/simulator.fbs`).
@@ -53,8 +53,8 @@ class Encoder {
 
   /// Valid until the next call. A picture's pixels are not copied: the frame refers to them and is
   /// valid only while `message` is unchanged.
-  link::FramePieces encode(const Request& message);
-  link::FramePieces encode(const Reply& message);
+  wire::FramePieces encode(const Request& message);
+  wire::FramePieces encode(const Reply& message);
 
  private:
   struct Impl;

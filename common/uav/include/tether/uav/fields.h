@@ -1,0 +1,209 @@
+#pragma once
+
+#include <cmath>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <tether/uav/catalogue.h>
+#include <tether/uav/math.h>
+#include <tether/uav/multirotor.h>
+#include <tether/uav/samples.h>
+#include <tether/wire/fields.h>
+
+/// The fields of what is sent of a UAV: tether/wire/fields.h.
+namespace tether::wire {
+
+template <>
+inline constexpr bool kIsStruct<uav::Vec3> = true;
+template <>
+inline constexpr bool kIsStruct<uav::Quat> = true;
+template <>
+inline constexpr bool kIsStruct<uav::Pose> = true;
+template <>
+inline constexpr bool kIsStruct<uav::Rotor> = true;
+template <>
+inline constexpr bool kIsStruct<uav::BodyState> = true;
+
+}  // namespace tether::wire
+
+namespace tether::uav {
+
+using wire::Is;
+
+/// Most bytes of an image: those of 4096×4096 pixels with colours and depths.
+inline constexpr std::size_t kMaxImageBytes = (128u << 20) - 4096;
+
+constexpr void fields(auto& io, Is<Vec3> auto& v) {
+  io("x", v.x);
+  io("y", v.y);
+  io("z", v.z);
+}
+/// Rotations are used without being normalised.
+constexpr void fields(auto& io, Is<Quat> auto& q) {
+  io("w", q.w);
+  io("x", q.x);
+  io("y", q.y);
+  io("z", q.z);
+  io.require([&q] { return std::abs(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z - 1.0) < 1e-6; },
+             "q", "is not a unit quaternion");
+}
+constexpr void fields(auto& io, Is<Pose> auto& X) {
+  io("p", X.p);
+  io("q", X.q);
+}
+constexpr void fields(auto& io, Is<BodyState> auto& s) {
+  io("p_wb", s.p_WB);
+  io("q_wb", s.q_WB);
+  io("v_wb", s.v_WB);
+  io("w_wb_b", s.w_WB_B);
+}
+constexpr void fields(auto& io, Is<Rotor> auto& rotor) {
+  io("p_br", rotor.p_BR);
+  io("direction", rotor.direction,
+     wire::Rule{[](int d) { return d == 1 || d == -1; }, "have a direction other than 1 or -1"});
+}
+
+void fields(auto& io, Is<MultirotorParameters> auto& m) {
+  using wire::kNotNegative;
+  const wire::Rule positive{[](const Vec3& v) { return v.x > 0.0 && v.y > 0.0 && v.z > 0.0; },
+                            "is not positive"};
+  io("mass_kg", m.mass_kg, wire::kPositive);
+  io("inertia_kg_m2", m.inertia_kg_m2, positive);
+  io("rotors", m.rotors, wire::AtMost{MultirotorState::kMaxRotors, "are not 1 to 8"},
+     wire::Rule{[](const auto& rotors) { return !rotors.empty(); }, "are not 1 to 8"});
+  io("thrust_coefficient", m.thrust_coefficient, kNotNegative);
+  io("moment_coefficient_m", m.moment_coefficient_m, kNotNegative);
+  io("drag_coefficient", m.drag_coefficient, kNotNegative);
+  io("linear_drag_n_s_m", m.linear_drag_N_s_m, kNotNegative);
+  io("max_rotor_speed_rad_s", m.max_rotor_speed_rad_s, kNotNegative);
+  io("time_constant_up_s", m.time_constant_up_s, kNotNegative);
+  io("time_constant_down_s", m.time_constant_down_s, kNotNegative);
+  io("max_tilt_rad", m.max_tilt_rad, kNotNegative);
+  io("max_horizontal_speed_m_s", m.max_horizontal_speed_m_s, kNotNegative);
+  io("max_vertical_speed_m_s", m.max_vertical_speed_m_s, kNotNegative);
+  io("max_yaw_rate_rad_s", m.max_yaw_rate_rad_s, kNotNegative);
+  io("max_acceleration_m_s2", m.max_acceleration_m_s2, kNotNegative);
+  io("max_yaw_acceleration_rad_s2", m.max_yaw_acceleration_rad_s2, kNotNegative);
+}
+
+// --- catalogue ----------------------------------------------------------------------------------
+
+void limit_fields(auto& io, auto& m) {
+  io("min_m", m.min_m);
+  io("max_m", m.max_m);
+  io.require([&m] { return m.min_m >= 0.0 && m.min_m <= m.max_m; }, "min_m",
+             "is not within 0..max_m");
+}
+
+void fields(auto& io, Is<CameraProperties> auto& m) {
+  auto& camera = m.model;
+  const wire::Rule side{[](int px) { return px > 0 && px <= 1 << 16; },
+                        "of the image size is not within 1..65536 pixels"};
+  const wire::Rule focal{[](double px) { return px > 0.0; },
+                         "is a focal length that is not positive"};
+  io("width_px", camera.width_px, side);
+  io("height_px", camera.height_px, side);
+  io("fx_px", camera.fx_px, focal);
+  io("fy_px", camera.fy_px, focal);
+  io("cx_px", camera.cx_px);
+  io("cy_px", camera.cy_px);
+  io("k1", camera.k1);
+  io("k2", camera.k2);
+  io("k3", camera.k3);
+  io("p1", camera.p1);
+  io("p2", camera.p2);
+  io("kind", m.kind, wire::known_up_to(CameraKind::kSegmentation));
+  limit_fields(io, m);
+  io("models", m.models, wire::OmitEmpty{}, wire::AtMost{kMaxModels},
+     wire::EachAtMost{kMaxNameBytes});
+}
+void fields(auto&, Is<ImuProperties> auto&) {}
+void fields(auto& io, Is<RangeProperties> auto& m) {
+  limit_fields(io, m);
+}
+
+void fields(auto& io, Is<SensorDescription> auto& m) {
+  io.here([&m] { return "sensor '" + m.name.substr(0, kMaxNameBytes) + "': "; });
+  io("name", m.name, wire::AtMost{kMaxNameBytes}, wire::kNotEmpty);
+  io("x_bs", m.X_BS);
+  io("rate_hz", m.rate_hz, wire::kNotNegative);
+  io("properties", m.properties);
+}
+
+void fields(auto& io, Is<Anchor> auto& m) {
+  io.here([&m] { return "anchor '" + m.name.substr(0, kMaxNameBytes) + "': "; });
+  const auto each = [](const Vec3& v, auto holds) {
+    return holds(v.x) && holds(v.y) && holds(v.z);
+  };
+  io("name", m.name, wire::AtMost{kMaxNameBytes}, wire::kNotEmpty);
+  io("shape", m.shape, wire::known_up_to(AnchorShape::kSphere));
+  io("size_m", m.size_m,
+     wire::Rule{[=](const Vec3& v) { return each(v, [](double s) { return s >= 0.0; }); },
+                "is negative"});
+  io("color_rgb", m.color_rgb,
+     wire::Rule{[=](const Vec3& v) { return each(v, wire::kShare.holds); }, "is not within 0..1"});
+}
+
+void fields(auto& io, Is<Catalogue> auto& m) {
+  const wire::Rule unique{[](const auto& entries) {
+                            std::set<std::string_view> names;
+                            for (const auto& entry : entries)
+                              if (!names.insert(entry.name).second) return false;
+                            return true;
+                          },
+                          "have the same name twice"};
+  io("uav", m.uav, wire::AtMost{kMaxNameBytes});
+  io("sensors", m.sensors, wire::AtMost{kMaxCatalogueEntries}, unique);
+  io("anchors", m.anchors, wire::AtMost{kMaxCatalogueEntries}, unique);
+  io("battery_capacity_c", m.battery_capacity_C, wire::kNotNegative);
+}
+
+// --- samples ------------------------------------------------------------------------------------
+
+void fields(auto& io, Is<CameraSample> auto& m) {
+  io("sampled_at_st_ns", m.sampled_at);
+  io("index", m.index);
+  io("width_px", m.width_px);
+  io("height_px", m.height_px);
+  io("rgb", m.rgb, wire::Apart{});
+  io("depth_m", m.depth_m, wire::OmitEmpty{});
+  io("labels", m.labels, wire::OmitEmpty{});
+  const auto is_whole = [&m](std::size_t size, std::size_t per_pixel) {
+    const std::int64_t pixels = std::int64_t{m.width_px} * m.height_px;
+    return size == 0 ||
+           (size % per_pixel == 0 && static_cast<std::int64_t>(size / per_pixel) == pixels);
+  };
+  io.require([&] { return m.width_px > 0 && m.height_px > 0; }, "image size", "is not positive");
+  io.require([&] { return !m.rgb.empty() || !m.depth_m.empty() || !m.labels.empty(); }, "image",
+             "is empty");
+  io.require([&] { return is_whole(m.rgb.size(), 3); }, "image", "is not width x height x 3 bytes");
+  io.require([&] { return is_whole(m.depth_m.size(), 1); }, "depth_m",
+             "is not width x height numbers");
+  io.require([&] { return is_whole(m.labels.size(), 1); }, "labels",
+             "is not width x height numbers");
+  io.require(
+      [&] { return m.rgb.size() + 4 * m.depth_m.size() + 2 * m.labels.size() <= kMaxImageBytes; },
+      "image", "is larger than a frame may be");
+}
+void fields(auto& io, Is<ImuSample> auto& m) {
+  io("sampled_at_st_ns", m.sampled_at);
+  io("index", m.index);
+  io("angular_velocity_rad_s", m.angular_velocity_rad_s);
+  io("specific_force_m_s2", m.specific_force_m_s2);
+  io("q_ws", m.q_WS);
+}
+void fields(auto& io, Is<RangeSample> auto& m) {
+  io("sampled_at_st_ns", m.sampled_at);
+  io("index", m.index);
+  io("range_m", m.range_m, wire::AnyNumber{}, wire::kNoNan);
+}
+void fields(auto& io, Is<BatterySample> auto& m) {
+  io("sampled_at_st_ns", m.sampled_at);
+  io("voltage_v", m.voltage_V);
+  io("current_a", m.current_A);
+  io("charge", m.charge, wire::kShare);
+}
+
+}  // namespace tether::uav
