@@ -10,6 +10,13 @@
 #include <variant>
 
 namespace tether::client {
+namespace {
+
+constexpr const char* kOverlapReason =
+    "a thread called the vehicle during another thread's call, and had to wait for it, as it would "
+    "not on a board. Set `concurrent = true` under [sut], or let the threads take turns";
+
+}  // namespace
 
 SimulatedVehicle::SimulatedVehicle(std::unique_ptr<link::Channel> channel, link::Welcome welcome,
                                    std::unique_ptr<TimeSource> source,
@@ -52,7 +59,10 @@ SimulatedVehicle::Call::Call(SimulatedVehicle& vehicle) {
     signals_.emplace(std::initializer_list<int>{SIGINT, SIGTERM, SIGQUIT, SIGHUP, SIGTSTP, SIGTTIN,
                                                 SIGTTOU, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGTRAP,
                                                 SIGSYS, SIGABRT});
-  lock_ = std::unique_lock(vehicle.calls_);
+  lock_ = std::unique_lock(vehicle.calls_, std::try_to_lock);
+  if (lock_.owns_lock()) return;
+  vehicle.has_overlapping_calls_ = true;
+  lock_.lock();
 }
 
 Result<link::Reply> SimulatedVehicle::interact(Body body) {
@@ -116,9 +126,12 @@ Result<link::Reply> SimulatedVehicle::ask(const link::Request& request) {
   return std::move(*reply);
 }
 
-// The coordinator ends the run with the reason.
+// A thread that waits for another one's call computes nothing meanwhile, as it would on a board:
+// how long depends on the simulation. The coordinator ends the run with the reason.
 Status SimulatedVehicle::complete() {
-  const Status good = source_->complete();
+  Status good = source_->complete();
+  if (good && has_overlapping_calls_ && !free_running_)
+    good = Failure{Failure::Kind::kRefused, kOverlapReason};
   if (good) return good;
   give_up(good.failure());
   const std::lock_guard lock(sending_);

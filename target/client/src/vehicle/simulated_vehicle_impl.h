@@ -8,6 +8,7 @@
 #include "vehicle/progress_reporter.h"
 #include "vehicle/stage_log.h"
 
+#include <atomic>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -19,7 +20,8 @@
 namespace tether::client {
 
 /// A UAV in the simulator, reached over a channel whose handshake is done. Serial: one call at a
-/// time talks to the coordinator, the others wait for it.
+/// time talks to the coordinator. Under the barrier, calls of two threads at the same time end the
+/// run: a program that makes them is concurrent.
 class SimulatedVehicle final : public InteractingVehicle {
  public:
   /// `progress_period` 0: no progress messages. In free running they are a sign of life, no more.
@@ -71,6 +73,7 @@ class SimulatedVehicle final : public InteractingVehicle {
   bool free_running_;  // the policy of clock_
 
   std::mutex calls_;  // of a Call; taken before sending_; guards what is below sending_
+  std::atomic<bool> has_overlapping_calls_ = false;  // one had to wait for another one
 
   // A progress message is stamped and sent under this lock, and whatever else is sent takes it
   // after having held the clock: so no progress message follows a request, or is stamped later than

@@ -2,10 +2,13 @@
 #include "scripted_coordinator.h"
 #include "vehicle/simulated_vehicle_impl.h"
 
+#include <future>
 #include <memory>
+#include <mutex>
 #include <thread>
 #include <vector>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -30,9 +33,10 @@ std::vector<link::Message> answer(const link::Request& request) {
   return {reply};
 }
 
-/// Calls of every kind, as a careless program with threads makes them.
-void call_a_lot(Vehicle& vehicle, ManualTimeSource source) {
+/// Calls of every kind, in turn with the other threads.
+void call_a_lot(Vehicle& vehicle, ManualTimeSource source, std::mutex& turn) {
   for (int i = 0; i < kRounds; ++i) {
+    const std::lock_guard lock(turn);
     source.advance(1us);
     EXPECT_TRUE(vehicle.read_imu("imu").ok());
     const ExecTime before = vehicle.now();
@@ -45,15 +49,17 @@ void call_a_lot(Vehicle& vehicle, ManualTimeSource source) {
   }
 }
 
-TEST(SerialVehicle, CallsOfSeveralThreadsWaitForOneAnother) {
+TEST(SerialVehicle, ThreadsCanTakeTurns) {
   const link::Welcome welcome = welcome_with_sensors();
   ScriptedCoordinator coordinator(welcome, answer);
   ManualTimeSource source(computer::ClockKind::kCpu);
   SimulatedVehicle vehicle(coordinator.connect(), welcome,
                            std::make_unique<ManualTimeSource>(source),
                            std::make_unique<FakeWallTimer>(), Duration::zero());
+  std::mutex turn;
   std::vector<std::thread> threads;
-  for (int i = 0; i < kThreads; ++i) threads.emplace_back([&] { call_a_lot(vehicle, source); });
+  for (int i = 0; i < kThreads; ++i)
+    threads.emplace_back([&] { call_a_lot(vehicle, source, turn); });
   for (auto& thread : threads) thread.join();
 
   const auto requests = coordinator.requests();
@@ -63,6 +69,33 @@ TEST(SerialVehicle, CallsOfSeveralThreadsWaitForOneAnother) {
     // Every reply moves ET by 1 ms, so a request from within another's interaction would show.
     ASSERT_GE(requests[i].issued_at, requests[i - 1].issued_at + 1ms);
   }
+}
+
+// How long one thread waits for the other one's call depends on the simulation, not on the board.
+TEST(SerialVehicle, ACallDuringTheCallOfAnotherThreadEndsTheRun) {
+  const link::Welcome welcome = welcome_with_sensors();
+  std::promise<void> has_begun;
+  std::promise<void> may_end;
+  ScriptedCoordinator coordinator(welcome, [&](const link::Request& request) {
+    has_begun.set_value();
+    may_end.get_future().wait();
+    return answer(request);
+  });
+  SimulatedVehicle vehicle(coordinator.connect(), welcome,
+                           std::make_unique<ManualTimeSource>(computer::ClockKind::kCpu),
+                           std::make_unique<FakeWallTimer>(), Duration::zero());
+  std::thread first([&] { EXPECT_TRUE(static_cast<Vehicle&>(vehicle).read_imu("imu").ok()); });
+  has_begun.get_future().wait();
+  std::thread release([&] {
+    std::this_thread::sleep_for(50ms);
+    may_end.set_value();
+  });
+  const Status second = vehicle.command_velocity({});
+  ASSERT_FALSE(second.ok());
+  EXPECT_EQ(second.failure().kind, Failure::Kind::kRefused);
+  EXPECT_THAT(second.failure().message, testing::HasSubstr("concurrent = true"));
+  first.join();
+  release.join();
 }
 
 // Both would speak on one connection, and the parent's sequence would be broken.

@@ -34,9 +34,10 @@ struct RadioMessage {
 /// The UAV as its program sees it, simulated or real. Reads, commands, sleeps and `finish` are
 /// interactions and can block. Throws nothing.
 ///
-/// Thread-safe. Calls of a serial vehicle wait for each other; a call of a concurrent vehicle
-/// (`is_concurrent`) waits for its own reply only, while other threads continue to compute. A
-/// vehicle belongs to the process that made it: after fork() the child must connect for itself.
+/// Thread-safe. Threads that use a serial vehicle take turns: under the barrier, a call during
+/// another thread's call ends the run. A call of a concurrent vehicle (`is_concurrent`) waits for
+/// its own reply only, while other threads continue to compute. A vehicle belongs to the process
+/// that made it: after fork() the child must connect for itself.
 class Vehicle {
  public:
   virtual ~Vehicle() = default;
