@@ -372,6 +372,24 @@ const Condition* Scenario::find_condition(std::string_view condition) const {
 
 namespace {
 
+/// Results tell profiles by their names.
+void check_profile_names(const Scenario& scenario) {
+  std::map<std::string, std::filesystem::path> files;
+  const auto check = [&files](const Profile& profile) {
+    const auto [known, is_new] = files.emplace(profile.name, profile.file);
+    if (!is_new && known->second != profile.file)
+      throw Error(ErrorCode::kBadFile, toml::place_of(profile.file, "name"),
+                  fmt::format("'name' is \"{}\", which is also the name of the profile {}. Names "
+                              "must be unique, because results tell profiles by them.",
+                              profile.name, known->second.string()))
+          .about("name");
+  };
+  for (const UavSetup& uav : scenario.uavs)
+    if (uav.profile) check(*uav.profile);
+  for (const Condition& condition : scenario.conditions)
+    for (const Profile& profile : condition.profiles) check(profile);
+}
+
 Scenario read_scenario(const std::filesystem::path& file, const std::vector<Setting>& settings) {
   Scenario scenario;
   scenario.file = std::filesystem::absolute(file).lexically_normal();
@@ -394,6 +412,7 @@ Scenario read_scenario(const std::filesystem::path& file, const std::vector<Sett
   scenario.radio = read_radio(root);
   read_conditions(root, scenario);
   apply_to_profiles(of_profiles, scenario);
+  check_profile_names(scenario);
   read_metrics(root, scenario);
   read_record(root, scenario);
   for (const Setting& setting : settings)
@@ -434,6 +453,7 @@ Scenario load_scenario(const std::filesystem::path& file, const std::vector<Sett
 
 void lay_profile(Scenario& scenario, const Profile& profile) {
   for (Condition& condition : scenario.conditions) condition.profiles.push_back(profile);
+  check_profile_names(scenario);
   scenario.has_laid_profile = true;
   add_files(scenario, profile.files);
   sort_files(scenario);

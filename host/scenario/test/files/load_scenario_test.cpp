@@ -16,6 +16,7 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 using testing::Contains;
 using testing::ElementsAre;
+using testing::HasSubstr;
 using testing::Key;
 using testing::Pair;
 
@@ -120,6 +121,17 @@ TEST_F(LoadScenario, ReadsUavsWithTheirSensors) {
   EXPECT_THAT(s.uavs[0].sensors, ElementsAre(Key("camera"), Key("imu"), Key("range")));
   EXPECT_EQ(std::get<uav::PeriodicTiming>(*s.uavs[0].sensors.at("camera").timing).phase,
             milliseconds(3));
+}
+
+// Results tell profiles by their names: two of one name would look as if the sensors were the same.
+TEST_F(LoadScenario, RefusesTwoProfilesOfOneName) {
+  const Scenario known = load(kFullScenario);
+  Profile other = *known.uavs[0].profile;
+  other.file = scratch_.write("other/rig.toml", "name = \"rig\"\n");
+  Scenario scenario = known;
+  const Error error = thrown_error(ErrorCode::kBadFile, [&] { lay_profile(scenario, other); });
+  EXPECT_EQ(error.where().file, other.file);
+  EXPECT_THAT(error.what(), HasSubstr("which is also the name of the profile"));
 }
 
 TEST_F(LoadScenario, GivesEachUavItsOwnOrTheCommonSut) {
