@@ -67,7 +67,8 @@ bool have_same_set_up(const Speed& a, const Speed& b) {
 }
 
 bool differ_in_speed_only(const Compared& a, const Compared& b) {
-  return a.pace() && b.pace() && have_same_radio(*a.pace(), *b.pace()) &&
+  return a.verdict->uncharged == b.verdict->uncharged && a.pace() && b.pace() &&
+         have_same_radio(*a.pace(), *b.pace()) &&
          have_same_set_up(a.pace()->speed, b.pace()->speed) && have_same_sensors(a, b);
 }
 
@@ -114,9 +115,9 @@ bool costs_no_more(const Pace& image, const Pace& other) {
 
 bool is_equally_fast_and_reaches(const Compared& other, const Compared& missed,
                                  std::size_t comparisons) {
-  return other.pace() && missed.pace() && is_sufficient(other.verdict->ruling) &&
-         other.pace()->speed == missed.pace()->speed && have_same_sensors(other, missed) &&
-         costs_no_more(*missed.pace(), *other.pace()) &&
+  return other.pace() && missed.pace() && is_evidence(*other.verdict) &&
+         is_sufficient(other.verdict->ruling) && other.pace()->speed == missed.pace()->speed &&
+         have_same_sensors(other, missed) && costs_no_more(*missed.pace(), *other.pace()) &&
          reaches_more_often(*other.verdict, *missed.verdict, comparisons);
 }
 
@@ -140,10 +141,7 @@ const judge::ClauseVerdict* of_forgotten_task(const campaign::TrialResult& fligh
 }
 
 /// What has nothing to do with the speed of a computer; empty: not known.
-std::string known_cause(const campaign::TrialResult& flight, const std::optional<Pace>& pace) {
-  for (const Warning& warning : flight.warnings)
-    if (warning.consequence == Consequence::kDoubtfulStart)
-      return warning.subject + " " + warning.message;
+std::string known_cause(const campaign::TrialResult& flight, const std::optional<Pace>&) {
   for (const campaign::UavContacts& own : flight.contacts)
     if (own.hard > 0 && own.hardest && own.hardest->at <= kBeforeAnyProgram)
       return fmt::format("{} hits “{}” at ST {:.3f} s, before a program can act", own.uav,
@@ -153,6 +151,14 @@ std::string known_cause(const campaign::TrialResult& flight, const std::optional
       return fmt::format("the battery of {} is at {:.2g} % at the start", energy.uav,
                          100.0 * energy.charge_from);
   if (const judge::ClauseVerdict* clause = of_forgotten_task(flight)) return clause->limited_by;
+  return "";
+}
+
+/// What can be the reason, if the program depends on it; empty: there is nothing.
+std::string possible_cause(const campaign::TrialResult& flight, const std::optional<Pace>& pace) {
+  for (const Warning& warning : flight.warnings)
+    if (warning.consequence == Consequence::kDoubtfulStart)
+      return warning.subject + " " + warning.message;
   if (pace && pace->messages > 0 && pace->messages_arrived == 0)
     return fmt::format("none of {} messages arrives", pace->messages);
   return "";
@@ -237,18 +243,21 @@ MissReason reason_of(const Compared& missed, const std::vector<Compared>& all,
   if (!faster.empty())
     return {Evidence::kFasterUndecided, faster.front()->label,
             comparison_text(*faster.front(), missed)};
+  if (const std::string cause = in_each(missed, possible_cause); !cause.empty())
+    return {Evidence::kPossibleCause, "", cause};
   return {};
 }
 
 Ruling ruling_on(Evidence evidence) {
   if (evidence <= Evidence::kMissesOwnPace) return Ruling::kNotFastEnough;
-  return evidence <= Evidence::kFasterUndecided ? Ruling::kGoalMissed : Ruling::kOtherReason;
+  return evidence <= Evidence::kPossibleCause ? Ruling::kGoalMissed : Ruling::kOtherReason;
 }
 
 }  // namespace
 
 bool is_evidence(const ConditionVerdict& one) {
-  return one.ruling > Ruling::kUnseen && one.ruling < Ruling::kFreeRunning && one.flown > 0;
+  return one.ruling > Ruling::kUnseen && one.ruling < Ruling::kFreeRunning && one.flown > 0 &&
+         one.uncharged.empty();
 }
 
 double chance_of(const ConditionVerdict& a, const ConditionVerdict& b) {

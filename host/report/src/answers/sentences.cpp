@@ -90,6 +90,7 @@ constexpr std::array kMissReasons = {
     " No faster condition that is otherwise the same was flown, so whether speed matters is not "
     "known.",
     " “{condition}” is faster and {text}. That does not show whether speed matters.",
+    " A possible reason: {text}. Whether speed matters is not known.",
     " The reason: {text}.",
     " Computing takes no time there, so a faster computer does not help.",
     " “{condition}” misses it too, although computing takes no time there.",
@@ -261,11 +262,14 @@ const Words& words_of(Ruling ruling) {
 
 /// A good answer that rests on less than what was asked for.
 bool leaves_out(const ConditionVerdict& condition) {
-  return is_sufficient(condition.ruling) && (!condition.left_out.empty() || condition.failed > 0);
+  return is_sufficient(condition.ruling) &&
+         (!condition.left_out.empty() || !condition.uncharged.empty() || condition.failed > 0);
 }
 
 std::string left_out_in_lead(const ConditionVerdict& condition) {
   if (!leaves_out(condition)) return "";
+  if (!condition.uncharged.empty())
+    return fmt::format(", but “{}” is charged nothing", condition.uncharged.front());
   return condition.left_out.empty()
              ? fmt::format(", but {} of {} failed", condition.failed,
                            counted(condition.flown + condition.failed, "flight"))

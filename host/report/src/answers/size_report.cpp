@@ -53,6 +53,16 @@ std::string than(double slowdown) {
   return slowdown < 1.0 ? "of" : "than";
 }
 
+/// What the first words must say of the flights on which they rest.
+std::string reservation(const SizedCondition& sized) {
+  const bool leaves_out = std::ranges::any_of(sized.trials, [](const auto& trial) {
+    return std::ranges::any_of(trial.warnings, [](const Warning& warning) {
+      return warning.can_change_verdict && warning.consequence != Consequence::kDoubtfulStart;
+    });
+  });
+  return leaves_out ? ", but not everything is simulated as written;" : ",";
+}
+
 Answer main_answer(const SizeReport& report) {
   const SizedCondition& sized = report.synchronised;
   const sizing::Threshold& threshold = sized.answer.threshold;
@@ -75,11 +85,11 @@ Answer main_answer(const SizeReport& report) {
   }
   if (sized.answer.is_above)
     return {"Sufficient up to " + slower(report.question.most),
-            fmt::format(" {} “{}”, the most that was flown, {}", than(report.question.most),
-                        sized.condition, evidence)};
+            fmt::format(" {} “{}”, the most that was flown{} {}", than(report.question.most),
+                        sized.condition, reservation(sized), evidence)};
   return {"Sufficient up to " + slower(threshold.estimate),
-          fmt::format(" {} “{}” {}, {}", than(threshold.estimate), sized.condition,
-                      interval_text(threshold, report.question), evidence)};
+          fmt::format(" {} “{}” {}{} {}", than(threshold.estimate), sized.condition,
+                      interval_text(threshold, report.question), reservation(sized), evidence)};
 }
 
 Answer board_answer(const Board& board, const SizedCondition& sized) {

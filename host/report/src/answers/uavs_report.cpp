@@ -32,8 +32,21 @@ std::string evidence_of(const UavsReport& report) {
   return parts.empty() ? "nothing was flown" : joined_with_and(parts);
 }
 
+/// Of the computing of an image, where too many share the board. Less does not tell.
+constexpr double kWaitingThatTells = 0.1;
+
+/// The flights with too many UAVs miss the goal, although hardly a program waits for cores.
+bool is_not_for_sharing(const UavsReport& report) {
+  const auto& pace = report.pace.pace;
+  return report.answer.too_many <= report.question.most && pace && !pace->shared_board.empty() &&
+         !pace->camera.empty() && pace->waiting < kWaitingThatTells;
+}
+
 std::string lead_of(const UavsReport& report) {
   const auto& [carried, too_many, next] = report.answer;
+  if (is_not_for_sharing(report))
+    return fmt::format("Goal missed with {}; that they share the board is probably not the reason",
+                       uavs(too_many));
   const std::size_t least = report.question.least, most = report.question.most;
   if (!report.answer.is_decided() && too_many > most)
     return carried < least
@@ -133,13 +146,18 @@ std::vector<std::string> uavs_advice(const UavsReport& report) {
   if (answer.is_decided() && answer.carried < report.question.least && report.question.least > 1)
     advice.push_back(fmt::format("Try fewer: `--between 1,{}`.", report.question.least));
   if (answer.too_many <= report.question.most) {
-    if (const auto& pace = report.pace.pace; pace && !pace->stages.empty())
+    const bool is_for_sharing = !is_not_for_sharing(report);
+    if (!is_for_sharing)
+      advice.push_back(fmt::format(
+          "Look at what the added UAV does: `tether run {} --condition {} --set uavs={}`",
+          os::shell_word(report.scenario), os::shell_word(report.condition), answer.too_many));
+    if (const auto& pace = report.pace.pace; is_for_sharing && pace && !pace->stages.empty())
       advice.push_back(fmt::format(
           "To carry {}, speed up “{}” first: it takes {:.0f} % of the computing time.",
           answer.is_decided() && answer.carried < report.question.least ? "them" : "more",
           pace->stages.front().stage, 100.0 * pace->stages.front().share));
     advice.push_back(
-        fmt::format("To see how much faster the board must be to carry all: `tether "
+        fmt::format("To see whether a faster board carries all, and how much faster: `tether "
                     "size {} --condition {} --between 0.1,2`",
                     os::shell_word(report.scenario), os::shell_word(report.condition)));
   }

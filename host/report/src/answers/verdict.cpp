@@ -97,6 +97,9 @@ void count(ConditionVerdict& verdict, const campaign::TrialResult& trial) {
         warning.can_change_verdict && warning.consequence != Consequence::kDoubtfulStart &&
         std::ranges::count(verdict.left_out, line) == 0)
       verdict.left_out.push_back(line);
+  if (trial.replay)
+    for (const std::string& stage : trial.replay->unknown_stages)
+      if (std::ranges::count(verdict.uncharged, stage) == 0) verdict.uncharged.push_back(stage);
   if (trial.outcome == campaign::Outcome::kGoalReached) ++verdict.reached;
   if (has_crash(trial)) ++verdict.crashed;
   if (trial.this_run.target && trial.this_run.target->is_spoiled) ++verdict.throttled;

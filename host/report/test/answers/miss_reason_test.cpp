@@ -186,30 +186,23 @@ TEST_F(MissReasons, AreKnownOfWhatHasNothingToDoWithSpeed) {
     void (*plant)(campaign::TrialResult&, Pace&);
   };
   for (const Cause& cause :
-       {Cause{"UAV 'uav1' starts in the floor",
+       {Cause{"uav1 hits “floor” at ST 0.000 s, before a program can act",
               [](campaign::TrialResult&trial, Pace&) {
-                trial.warnings = {
-                    {Consequence::kDoubtfulStart, {}, "UAV 'uav1'", "starts in the floor"}};
+                trial.contacts = {{.uav = "uav1", .count = 1, .hard = 1}};
+                trial.contacts[0].hardest =
+                    record::Contact{.uav = "uav1", .at = {}, .with = "floor"};
               }},
-        {"uav1 hits “floor” at ST 0.000 s, before a program can act",
-         [](campaign::TrialResult&trial, Pace&) {
-           trial.contacts = {{.uav = "uav1", .count = 1, .hard = 1}};
-           trial.contacts[0].hardest = record::Contact{.uav = "uav1", .at = {}, .with = "floor"};
-         }},
         {"the battery of uav1 is at 0.01 % at the start",
          [](campaign::TrialResult&trial, Pace&) {
            trial.end = campaign::kEndBatteryEmpty;
            trial.energy = {{.uav = "uav1", .charge_from = 1e-4}};
          }},
-        {"the task 'look' did not run",
-         [](campaign::TrialResult&trial, Pace&) {
+        {"the task 'look' did not run", [](campaign::TrialResult&trial, Pace&) {
            trial.end = campaign::kEndFinished;
            trial.metrics.clear();
            trial.clauses = {
                {.uav = "uav1", .name = "near", .limited_by = "the task 'look' did not run"}};
-         }},
-        {"none of 7 messages arrives",
-         [](campaign::TrialResult&, Pace&pace) { pace.messages = 7; }}}) {
+         }}}) {
     scenario_ = {};
     paces_.clear();
     add("board", 0, 1, measured(0.2));
@@ -219,6 +212,36 @@ TEST_F(MissReasons, AreKnownOfWhatHasNothingToDoWithSpeed) {
                 testing::AllOf(StartsWith("Goal missed; speed is probably not the reason: "),
                                HasSubstr(std::string("The reason: ") + cause.text + ".")));
   }
+}
+
+// Perhaps the program needs neither the messages nor the anchor that is far away.
+TEST_F(MissReasons, ArePossibleOfWhatAProgramMayNotNeed) {
+  add("board", 0, 1, measured(0.2));
+  trials(0)[0].warnings = {
+      {Consequence::kDoubtfulStart, {}, "UAV 'uav1'", "starts 76 m from the nearest anchor"}};
+  EXPECT_EQ(ruling(0), Ruling::kGoalMissed);
+  EXPECT_THAT(verdict_text({verdict()}, Markup::kPlain),
+              HasSubstr("A possible reason: UAV 'uav1' starts 76 m from the nearest anchor. "
+                        "Whether speed matters is not known."));
+  trials(0)[0].warnings.clear();
+  paces_[0]->messages = 7;
+  EXPECT_THAT(verdict_text({verdict()}, Markup::kPlain),
+              HasSubstr("A possible reason: none of 7 messages arrives."));
+  add("host", 5, 5, measured(0.02));
+  EXPECT_NE(ruling(0), Ruling::kOtherReason);
+}
+
+// The program has a stage that was not there when its times were recorded.
+TEST_F(MissReasons, AreNotShownByFlightsThatChargeNothingForAStage) {
+  const std::size_t board = add("board", 0, 40, measured(0.2));
+  const std::size_t replayed = add("replayed", 40, 0, measured(0.02));
+  program(board).clock.factor = 10.0;
+  EXPECT_EQ(ruling(board), Ruling::kNotFastEnough);
+  for (campaign::TrialResult& trial : trials(replayed))
+    trial.replay = campaign::ReplayReport{{}, {"extra"}};
+  EXPECT_EQ(ruling(board), Ruling::kGoalMissed);
+  EXPECT_THAT(verdict_text({verdict()}, Markup::kPlain),
+              HasSubstr("Fast enough, but “extra” is charged nothing: on “replayed”"));
 }
 
 // A program that ends its mission because a task was late does not run the next one.

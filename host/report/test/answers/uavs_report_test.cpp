@@ -69,6 +69,23 @@ TEST(UavsReport, SaysWhatSharingCostsAndWhatToDo) {
   EXPECT_THAT(uavs_advice(report_of({{2, 3, 3}}))[0], StartsWith("Fly more"));
 }
 
+// The second UAV may fly into a wall.
+TEST(UavsReport, DoesNotBlameTheBoardIfHardlyAProgramWaitsForCores) {
+  UavsReport report = report_of({{1, 36, 36}, {2, 3, 0}});
+  report.pace.pace = Pace{.stages = {{.stage = "detect", .share = 0.8}},
+                          .camera = "camera",
+                          .median_s = 0.01,
+                          .shared_board = "obc",
+                          .programs = 2,
+                          .waiting = 0.02};
+  EXPECT_EQ(uavs_answers(report).front().lead,
+            "Goal missed with 2 UAVs; that they share the board is probably not the reason");
+  EXPECT_THAT(uavs_advice(report)[0],
+              StartsWith("Look at what the added UAV does: `tether run four"));
+  for (const std::string& advice : uavs_advice(report))
+    EXPECT_THAT(advice, testing::Not(HasSubstr("speed up")));
+}
+
 TEST(UavsReport, HasTheSameAnswerAsJsonPageAndJunit) {
   const UavsReport report = report_of({{2, 36, 36}, {3, 2, 0}});
   const auto json = nlohmann::json::parse(uavs_json(report));

@@ -62,6 +62,7 @@ struct MissReason {
     // It is not known.
     kNothing,          ///< no faster condition was flown, or the speeds are not known
     kFasterUndecided,  ///< another condition is faster, but does not show that speed matters
+    kPossibleCause,    ///< something else happened that can be the reason: see `text`
     // Speed is probably not the reason.
     kKnownCause,          ///< what happened has nothing to do with computing: see `text`
     kInstant,             ///< computing takes no time under this condition
@@ -109,6 +110,8 @@ struct ConditionVerdict {
   std::vector<FlightsInDoubt> doubts{};  ///< one of each kind, in the order of the kinds
   /// What of the files is not simulated as written and can change the verdict, one line each.
   std::vector<std::string> left_out{};
+  /// Stages that the flights computed for nothing: times are replayed, and have none of them.
+  std::vector<std::string> uncharged{};
   std::optional<Pace> pace{};
   std::string unknown_pace{};        ///< why it is not known; empty: there is none to know
   std::optional<MissReason> miss{};  ///< of the three rulings on a missed goal
