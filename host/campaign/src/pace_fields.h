@@ -42,27 +42,6 @@ void fields(auto& io, Maybe<record::BoardInfo> auto& m) {
   io("is_real", m.is_real);
 }
 
-void fields(auto& io, Maybe<record::RadioInfo> auto& m) {
-  io("model", m.model);
-  io("least_delay_s", m.least_delay);
-  io("data_rate_bit_s", m.data_rate_bit_s);
-  io("inbox_messages", m.inbox_messages);
-  if (!io.has("access", !m.access.empty())) return;
-  io("access", m.access);
-  io("queue_messages", m.queue_messages);
-  io("header_bytes", m.header_bytes);
-  io("delay_s", m.delay);
-  io("preamble_s", m.preamble);
-  io("slot_s", m.slot);
-  io("bandwidth_hz", m.bandwidth_hz);
-  io("tx_power_dbm", m.tx_power_dbm);
-  io("noise_figure_db", m.noise_figure_db);
-  io("reference_loss_db", m.reference_loss_db);
-  io("exponent", m.exponent);
-  io("shadowing_db", m.shadowing_db);
-  io("wall_loss_db", m.wall_loss_db);
-}
-
 void fields(auto& io, Maybe<timing::StageRow> auto& m) {
   io("stage", m.stage);
   io("count", m.count);
@@ -124,7 +103,7 @@ void fields(auto& io, Maybe<timing::Pace> auto& m) {
   }
   io.some("boards", m.boards);
   io("speed", m.speed);
-  if (!io.has("radio", !m.radio.model.empty())) return;
+  if (!io.has("radio", !m.radio.empty())) return;
   io("radio", m.radio);
   io("messages", m.messages);
   io("messages_arrived", m.messages_arrived);

@@ -109,6 +109,7 @@ TEST_F(Result, ReadsBackWithEveryOptionalPart) {
                              .programs = 3,
                              .waiting = 0.25,
                              .boards = {{.board = "obc", .uavs = {"uav1"}, .alone = 0.5}},
+                             .radio = "radio=ideal",
                              .messages = 7,
                              .messages_arrived = 6};
   trial_.pace->speed = {.programs = {{.uav = "uav1",
@@ -127,9 +128,6 @@ TEST_F(Result, ReadsBackWithEveryOptionalPart) {
                         .machine = "here",
                         .target = "pi ssh://pi",
                         .emulator = trial_.emulator};
-  trial_.pace->radio.model = "log_distance";
-  trial_.pace->radio.access = "csma";
-  trial_.pace->radio.slot = Duration(9'000);
   trial_.warnings = {{Consequence::kMissing, {"w.sdf", 7}, "<include> of 'sun'", "is not found"},
                      {Consequence::kNoEffect, {}, "visual 'v'", "is plain", true}};
   trial_.sync.stops = StopFigures{1200, Duration(73'000)};

@@ -69,40 +69,6 @@ campaign::TrialResult setup_failure(const TrialSpec& spec, const std::string& re
   return result;
 }
 
-/// Puts in what the record of a repeatable run leaves out.
-void complete(Conducted& conducted) {
-  record::Record& record = conducted.record;
-  record.header.target = conducted.target;
-  if (!record.footer) return;
-  record.footer->wall = conducted.report.wall;
-  record.footer->target_after = conducted.target_after;
-}
-
-campaign::TrialResult make_result(const TrialSpec& spec, const record::Record& record,
-                                  const std::vector<campaign::TaskEnd>& task_ends) {
-  auto result = campaign::make_result(spec.scenario, spec.condition, record, task_ends);
-  if (record.header.target && record.footer)
-    result.this_run.target =
-        report_of(*record.header.target, record.footer->target_after, result.reason);
-  return result;
-}
-
-/// The result of a run whose record could not be written to its end, from what happened until then.
-/// The trial counts as not set up, so that a campaign repeats it.
-campaign::TrialResult unrecorded(const TrialSpec& spec, const Conducted& conducted) {
-  const coordinator::RunReport& report = conducted.report;
-  auto result = make_result(spec, conducted.record, {});
-  const audit::Verdict verdict = audit::audit(conducted.record);
-  result.audit = {verdict.passed(), audit::to_line(verdict)};
-  result.end = campaign::kEndSetupFailed;
-  result.this_run.wall = report.wall;
-  campaign::invalidate(
-      result, fmt::format("{}; the run reached ST {:.3f} s, with {} interactions, and the record "
-                          "has those before the error",
-                          report.reason, to_seconds(verdict.reached), verdict.interactions));
-  return result;
-}
-
 void write_margins(const TrialSpec& spec, const campaign::TrialResult& result) {
   std::vector<record::Margin> margins;
   for (const auto& clause : result.clauses)
@@ -112,22 +78,33 @@ void write_margins(const TrialSpec& spec, const campaign::TrialResult& result) {
 }
 
 /// The result of a run, from its messages. The record stays if there is too little memory for it.
-campaign::TrialResult evaluate(const TrialSpec& spec, Conducted& conducted) try {
+/// If it could not be written to its end, the trial counts as not set up, so that a campaign
+/// repeats it.
+campaign::TrialResult evaluate(const TrialSpec& spec, const Conducted& conducted) try {
   const coordinator::RunReport& report = conducted.report;
   const std::filesystem::path file = spec.folder / kRecordFile;
   if (!report.began) return setup_failure(spec, report.reason, report.end == RunEnd::kInterrupted);
   if (!std::filesystem::exists(file))
     throw Error(ErrorCode::kSetup, {file.string()}, "the record was removed during the run");
-  if (report.end == RunEnd::kRecordFailed) return unrecorded(spec, conducted);
-  complete(conducted);
-  const record::Record& record = conducted.record;
-  auto result = make_result(spec, record, task_ends(report));
-  const audit::Verdict verdict = audit::audit(record);
+  const bool is_recorded = report.end != RunEnd::kRecordFailed;
+  auto result =
+      campaign::make_result(spec.scenario, spec.condition, conducted.record, task_ends(report));
+  result.this_run.wall = report.wall;
+  if (conducted.target && is_recorded)
+    result.this_run.target = report_of(*conducted.target, conducted.target_after, result.reason);
+  const audit::Verdict verdict = audit::audit(conducted.record);
   result.audit = {verdict.passed(), audit::to_line(verdict)};
-  if (result.outcome == campaign::Outcome::kFailed)
+  if (!is_recorded) {
+    result.end = campaign::kEndSetupFailed;
+    campaign::invalidate(
+        result, fmt::format("{}; the run reached ST {:.3f} s, with {} interactions, and the record "
+                            "has those before the error",
+                            report.reason, to_seconds(verdict.reached), verdict.interactions));
+  } else if (result.outcome == campaign::Outcome::kFailed) {
     campaign::invalidate(result, report.reason);
-  else if (!verdict.passed())
+  } else if (!verdict.passed()) {
     campaign::invalidate(result, "the record breaks the rules of time: " + result.audit->summary);
+  }
   write_margins(spec, result);
   return result;
 } catch (const std::bad_alloc&) {

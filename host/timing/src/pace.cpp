@@ -197,7 +197,7 @@ std::optional<Pace> pace_of(const record::Record& record) {
   Pace found = *slowest;
   found.boards = board_paces(record, paces);
   found.speed = speed_of(record.header);
-  found.radio = record.header.radio;
+  found.radio = to_text(record.header.radio);
   found.messages = record.radio.size();
   found.messages_arrived = static_cast<std::size_t>(std::ranges::count(
       record.radio, record::kDelivered,

@@ -139,6 +139,15 @@ Readings readings(const StringMap& values) {
 
 }  // namespace
 
+std::string to_text(const RadioInfo& radio) {
+  StringMap values;
+  MetadataWriter writer(values);
+  if (!radio.model.empty()) radio_members(writer, radio);
+  std::string text;
+  for (const auto& [name, value] : values) text += (text.empty() ? "" : " ") + name + "=" + value;
+  return text;
+}
+
 StringMap to_metadata(const Header& header) {
   StringMap values;
   MetadataWriter writer(values);

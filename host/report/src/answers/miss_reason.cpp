@@ -46,12 +46,6 @@ bool have_same_sensors(const Compared& a, const Compared& b) {
   return a.flights.front()->profiles == b.flights.front()->profiles && simulator(a) == simulator(b);
 }
 
-/// Records of Tether 0.1.0 do not have all settings of a radio.
-bool have_same_radio(const Pace& a, const Pace& b) {
-  const bool is_known = a.radio.model.empty() || a.radio.inbox_messages > 0;
-  return is_known && a.radio == b.radio;
-}
-
 /// Of another architecture, it must be another build.
 bool is_same_program(const Speed::Program& one, const Speed::Program& other) {
   return one.build == other.build || one.loader != other.loader;
@@ -68,7 +62,7 @@ bool have_same_set_up(const Speed& a, const Speed& b) {
 
 bool differ_in_speed_only(const Compared& a, const Compared& b) {
   return a.verdict->uncharged == b.verdict->uncharged && a.pace() && b.pace() &&
-         have_same_radio(*a.pace(), *b.pace()) &&
+         a.pace()->radio == b.pace()->radio &&
          have_same_set_up(a.pace()->speed, b.pace()->speed) && have_same_sensors(a, b);
 }
 

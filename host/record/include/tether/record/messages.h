@@ -412,6 +412,9 @@ struct RadioInfo {
   double wall_loss_db = 0.0;
   friend bool operator==(const RadioInfo&, const RadioInfo&) = default;
 };
+/// All settings, equal for equal ones; empty if there is no radio.
+std::string to_text(const RadioInfo& radio);
+
 /// Configuration of the run: written first (metadata record "tether"), as names and values.
 struct Header {
   int schema_version = kSchemaVersion;

@@ -90,8 +90,8 @@ struct Pace {
   /// Of a fleet with several computers; empty: of no such fleet, or not known.
   std::vector<BoardPace> boards{};
 
-  Speed speed{};  ///< of all programs of the run
-  record::RadioInfo radio{};
+  Speed speed{};             ///< of all programs of the run
+  std::string radio{};       ///< its settings, to compare them; empty: there is none
   std::size_t messages = 0;  ///< of all programs, once for each receiver
   std::size_t messages_arrived = 0;
 
