@@ -1,10 +1,9 @@
 #pragma once
 
-#include "json_reader.h"
-
 #include <algorithm>
 #include <concepts>
 #include <cstdint>
+#include <filesystem>
 #include <limits>
 #include <map>
 #include <optional>
@@ -15,11 +14,20 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <tether/base/time.h>
 
 /// The two directions of `fields`, which lists the members of a part of a result once: `io` is a
 /// FieldWriter or a FieldReader. The order is that of the text. Times are in seconds, to the
 /// nanosecond; an optional value that is not there is null, and a structure is an object.
 namespace tether::campaign {
+
+using Json = nlohmann::ordered_json;
+
+/// @throws Error(kBadFile) if the text is not a complete JSON document, or deeper than
+/// kMaxJsonDepth.
+Json parse_json(const std::string& text, const std::filesystem::path& file);
 
 inline constexpr const char* kNotReported = "not reported";
 
@@ -112,90 +120,102 @@ class FieldWriter {
   }
 };
 
-/// @throws Error(kBadFile) about the member, as JsonReader.
+/// Every call throws Error(kBadFile) about the member if it is missing or of another type. A view:
+/// document and file name must outlive it.
 class FieldReader {
  public:
-  explicit FieldReader(JsonReader json) : json_(std::move(json)) {}
-
-  template <class Value>
-  void operator()(std::string_view name, Value& value) const {
-    if constexpr (std::is_same_v<Value, std::string>) {
-      value = json_.text(name);
-    } else if constexpr (std::is_same_v<Value, bool>) {
-      value = json_.boolean(name);
-    } else if constexpr (std::is_floating_point_v<Value>) {
-      value = json_.number(name);
-    } else if constexpr (std::is_integral_v<Value>) {
-      constexpr std::uint64_t kMost = std::numeric_limits<Value>::max();
-      value = static_cast<Value>(std::min(json_.count(name), kMost));
-    } else if constexpr (Time<Value>) {
-      value = Value(json_.seconds(name));
-    } else if constexpr (kIsOptional<Value>) {
-      value.reset();
-      if (!json_.member(name).is_null()) (*this)(name, value.emplace());
-    } else if constexpr (std::is_same_v<Value, std::vector<std::string>>) {
-      value = json_.texts(name);
-    } else if constexpr (std::is_same_v<Value, std::vector<double>>) {
-      value = json_.numbers(name);
-    } else if constexpr (std::is_same_v<Value, std::vector<std::uint64_t>>) {
-      value = json_.counts(name);
-    } else if constexpr (kIsList<Value>) {
-      value.clear();
-      for (const JsonReader& element : json_.objects(name)) {
-        const FieldReader io(element);
-        fields(io, value.emplace_back());
-      }
-    } else if constexpr (std::is_same_v<Value, std::map<std::string, std::string>>) {
-      value = json_.object(name).all_texts();
-    } else {
-      const FieldReader io(json_.object(name));
-      fields(io, value);
-    }
+  FieldReader(const Json& object, const std::filesystem::path& file)
+      : object_(&object), file_(&file) {
+    require(object.is_object(), "", "must contain JSON objects");
   }
-  bool has(std::string_view name, bool) const { return json_.has(name); }
+
+  void operator()(std::string_view name, auto& value) const { read(member(name), name, value); }
+  bool has(std::string_view name, bool = true) const { return object_->contains(name); }
   template <class Value>
   static Value& value_of(std::optional<Value>& value) {
     return value ? *value : value.emplace();
   }
   template <class Value>
   void optional(std::string_view name, std::optional<Value>& value) const {
-    if (json_.has(name)) (*this)(name, value.emplace());
+    if (has(name)) (*this)(name, value.emplace());
   }
   void some(std::string_view name, auto& value) const { since(name, value); }
   void since(std::string_view name, auto& value) const {
-    if (json_.has(name)) (*this)(name, value);
+    if (has(name)) (*this)(name, value);
   }
   static void derived(std::string_view, const auto&) {}
   static void implied(auto& value, const auto& source) { value = source; }
   template <class Word>
   void word(std::string_view name_of_member, Word& value, std::size_t count) const {
-    const std::string text = json_.text(name_of_member);
+    std::string text;
+    (*this)(name_of_member, text);
     for (std::size_t i = 0; i < count; ++i) {
       value = static_cast<Word>(i);
       if (name(value) == text) return;
     }
-    json_.fail(name_of_member, fmt::format("is \"{}\"", text));
+    require(false, name_of_member, fmt::format("is \"{}\"", text));
   }
   void within(std::string_view name, int& value, int least, int most) const {
     (*this)(name, value);
-    if (value < least || value > most)
-      json_.fail(name, fmt::format("must be {} to {}", least, most));
+    require(value >= least && value <= most, name, fmt::format("must be {} to {}", least, most));
   }
   template <class Value>
   void reported(std::string_view name, std::optional<Value>& value) const {
     value.reset();
-    if (!json_.member(name).is_string()) (*this)(name, value.emplace());
+    if (!member(name).is_string()) (*this)(name, value.emplace());
   }
   void object(std::string_view name, const auto& members) const {
-    const FieldReader io(json_.object(name));
+    const FieldReader io(member(name), *file_);
     members(io);
   }
   void converted(std::string_view name, auto& value, const auto&, const auto& from_json) const {
-    value = from_json(json_.member(name));
+    value = from_json(member(name));
   }
+  void require_schema(int newest) const;
 
  private:
-  JsonReader json_;
+  template <class Value>
+  void read(const Json& json, std::string_view name, Value& value) const {
+    if constexpr (std::is_same_v<Value, std::string>) {
+      require(json.is_string(), name, "must be a string");
+      value = json.get<std::string>();
+    } else if constexpr (std::is_same_v<Value, bool>) {
+      require(json.is_boolean(), name, "must be true or false");
+      value = json.get<bool>();
+    } else if constexpr (std::is_floating_point_v<Value>) {
+      require(json.is_number(), name, "must be a number");
+      value = json.get<double>();
+    } else if constexpr (std::is_integral_v<Value>) {
+      require(json.is_number_unsigned(), name, "must be a non-negative integer");
+      constexpr std::uint64_t kMost = std::numeric_limits<Value>::max();
+      value = static_cast<Value>(std::min(json.get<std::uint64_t>(), kMost));
+    } else if constexpr (Time<Value>) {
+      double seconds = 0.0;
+      read(json, name, seconds);
+      if (!is_representable_seconds(seconds))
+        require(false, name, fmt::format("is out of range ({})", seconds));
+      value = Value(duration_from_seconds(seconds));
+    } else if constexpr (kIsOptional<Value>) {
+      value.reset();
+      if (!json.is_null()) read(json, name, value.emplace());
+    } else if constexpr (kIsList<Value>) {
+      require(json.is_array(), name, "must be an array");
+      value.clear();
+      for (const Json& element : json) read(element, name, value.emplace_back());
+    } else if constexpr (std::is_same_v<Value, std::map<std::string, std::string>>) {
+      require(json.is_object(), name, "must be an object");
+      for (const auto& [key, text] : json.items()) read(text, key, value[key]);
+    } else {
+      require(json.is_object(), name, "must be an object");
+      const FieldReader io(json, *file_);
+      fields(io, value);
+    }
+  }
+  const Json& member(std::string_view name) const;
+  void require(bool condition, std::string_view name, std::string_view problem) const;
+
+  const Json* object_;
+  const std::filesystem::path* file_;
 };
 
 /// A file: an object that begins with its schema.
@@ -208,10 +228,9 @@ std::string text_of(const auto& whole, int schema) {
 template <class Whole>
 Whole read_text(const std::string& text, const std::filesystem::path& file, int newest_schema) {
   const Json document = parse_json(text, file);
-  const JsonReader json(document, file);
-  json.require_schema(newest_schema);
+  const FieldReader io(document, file);
+  io.require_schema(newest_schema);
   Whole whole;
-  const FieldReader io(json);
   fields(io, whole);
   return whole;
 }

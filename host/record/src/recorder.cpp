@@ -93,20 +93,16 @@ class McapRecorder final : public Recorder {
  private:
   template <class Kind>
   void put(SimTime at, const Kind& message, std::size_t kind) {
-    Channels& own = channels_[kind];
-    const std::string_view topic = std::get<KindInfo<Kind>>(kKinds).topic;
-    if constexpr (std::is_same_v<Kind, Interaction> || std::is_same_v<Kind, RadioMessage>) {
-      write_json(own.of(topic, {}), at, message);
-    } else if constexpr (std::is_same_v<Kind, Image>) {
-      write_json(own.of(topic, message.uav, message.sensor), at, message);
-    } else if constexpr (std::is_same_v<Kind, RawImage>) {
-      const bool is_depth = std::holds_alternative<std::vector<float>>(message.pixels);
-      write_json(
-          (is_depth ? own : labels_).of(is_depth ? topic : "/labels", message.uav, message.sensor),
-          at, message);
-    } else {
-      write_json(own.of(topic, message.uav), at, message);
-    }
+    constexpr bool is_of_all =
+        std::is_same_v<Kind, Interaction> || std::is_same_v<Kind, RadioMessage>;
+    Channels* channels = &channels_[kind];
+    std::string_view topic = std::get<KindInfo<Kind>>(kKinds).topic, uav, sensor;
+    if constexpr (!is_of_all) uav = message.uav;
+    if constexpr (kIsImage<Kind>) sensor = message.sensor;
+    if constexpr (std::is_same_v<Kind, RawImage>)
+      if (!std::holds_alternative<std::vector<float>>(message.pixels))
+        std::tie(channels, topic) = std::pair(&labels_, "/labels");
+    write_json(channels->of(topic, uav, sensor), at, message);
     if constexpr (std::is_same_v<Kind, GroundTruth>) {
       append_frame_transform(begin(transforms_.of("/tf", {}), at), message);
       mcap_.end_message();
