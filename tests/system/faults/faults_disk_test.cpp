@@ -167,7 +167,6 @@ TEST_F(TruncatedRecord, IsReadAsFarAsItIsWhole) {
   ASSERT_EQ(run(tether({"run", scenario, "--images", "--quiet", "--out", out_})).code, 0);
   const std::string file = out_ / "record.mcap", whole = read_text(file);
   const std::string computing_time = "Where the computing time goes";
-  EXPECT_THAT(run(tether({"report", out_})).out, HasSubstr(computing_time));
   const auto expect = [&](const char* command, int code) {
     const Output output = run(tether({command, file}));
     EXPECT_EQ(output.code, code) << command;
@@ -180,7 +179,8 @@ TEST_F(TruncatedRecord, IsReadAsFarAsItIsWhole) {
     expect("frames", 0);
   }
   EXPECT_THAT(run(tether({"report", out_})).out,
-              AllOf(HasSubstr("seed 1: goal_reached"), Not(HasSubstr(computing_time))));
+              AllOf(HasSubstr("seed 1: goal_reached"), HasSubstr(computing_time)))
+      << "which needs no record";
   // Without its header it is a bad file.
   for (const std::size_t size : {0u, 200u}) {
     write_text(file, whole.substr(0, size));
