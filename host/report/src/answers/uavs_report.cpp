@@ -35,11 +35,13 @@ std::string evidence_of(const UavsReport& report) {
 /// Of the computing of an image, where too many share the board. Less does not tell.
 constexpr double kWaitingThatTells = 0.1;
 
-/// The flights with too many UAVs miss the goal, although hardly a program waits for cores.
+/// The flights with too many UAVs miss the goal, although no program waits for cores, or hardly.
 bool is_not_for_sharing(const UavsReport& report) {
   const auto& pace = report.pace.pace;
-  return report.answer.too_many <= report.question.most && pace && !pace->shared_board.empty() &&
-         !pace->camera.empty() && pace->waiting < kWaitingThatTells;
+  if (report.answer.too_many > report.question.most || !pace || pace->shares_real_board)
+    return false;
+  const bool has_own_core = pace->shared_board.empty();
+  return has_own_core || (!pace->camera.empty() && pace->waiting < kWaitingThatTells);
 }
 
 std::string lead_of(const UavsReport& report) {

@@ -63,7 +63,7 @@ TEST(UavsReport, SaysWhatSharingCostsAndWhatToDo) {
             ": with 3 UAVs, an image costs 120 ms on the board, 66 % of it waiting for cores.");
   report.pace = pace_at_limit(report);
   EXPECT_THAT(uavs_answers(report).back().rest, HasSubstr("the result of seed "));
-  report.pace.pace = Pace{.stages = {{.stage = "detect", .share = 0.8}}};
+  report.pace.pace = Pace{.stages = {{.stage = "detect", .share = 0.8}}, .shared_board = "obc"};
   EXPECT_THAT(uavs_advice(report)[0], HasSubstr("speed up “detect” first"));
   EXPECT_THAT(uavs_advice(report_of({{4, 36, 36}}))[0], StartsWith("To find the limit"));
   EXPECT_THAT(uavs_advice(report_of({{2, 3, 3}}))[0], StartsWith("Fly more"));
@@ -84,6 +84,10 @@ TEST(UavsReport, DoesNotBlameTheBoardIfHardlyAProgramWaitsForCores) {
               StartsWith("Look at what the added UAV does: `tether run four"));
   for (const std::string& advice : uavs_advice(report))
     EXPECT_THAT(advice, testing::Not(HasSubstr("speed up")));
+  report.pace.pace->shared_board.clear();
+  EXPECT_THAT(uavs_answers(report).front().lead, StartsWith("Goal missed")) << "cores of their own";
+  report.pace.pace->shares_real_board = true;
+  EXPECT_THAT(uavs_answers(report).front().lead, StartsWith("This board carries"));
 }
 
 TEST(UavsReport, HasTheSameAnswerAsJsonPageAndJunit) {
