@@ -62,8 +62,8 @@ bool have_same_set_up(const Speed& a, const Speed& b) {
 
 bool differ_in_speed_only(const Compared& a, const Compared& b) {
   return a.verdict->uncharged == b.verdict->uncharged && a.pace() && b.pace() &&
-         a.pace()->radio == b.pace()->radio &&
-         have_same_set_up(a.pace()->speed, b.pace()->speed) && have_same_sensors(a, b);
+         a.pace()->radio == b.pace()->radio && have_same_set_up(a.pace()->speed, b.pace()->speed) &&
+         have_same_sensors(a, b);
 }
 
 struct Costs {

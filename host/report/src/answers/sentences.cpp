@@ -108,7 +108,8 @@ constexpr std::array kDoubts = {
     "the program of {subject} waited {amount:.2g} s on something that Tether does not see",
     "threads of the program of {subject} computed in parallel ({amount:.1f} × the wall time), but "
     "their times are added",
-    "the program of {subject} waited {amount:.2g} s for the disk, which its clock does not count",
+    "the program of {subject} waited {amount:.2g} s for the disk, or for a process that it started "
+    "by vfork, which its clock does not count",
     "the program of {subject} waited {amount:.2g} s, which the clock's factor stretches although "
     "no computer changes it",
     "the program of {subject} waited {percent:.1f} % of its time on something that Tether does not "
