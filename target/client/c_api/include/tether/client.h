@@ -32,12 +32,11 @@
 /// TETHER_RUN_ENDED. After any of these except TETHER_INVALID, every later interaction of the
 /// vehicle fails with the same status.
 ///
-/// **Threads**: several threads can call any function at the same time, also for the same vehicle.
-/// Nothing may be freed, and no options changed, while another thread uses them. If time is
-/// measured per process (tether_is_concurrent() is 0), threads take turns: under the barrier, a
-/// call during another thread's call ends the run. Under tether-exec each thread waits for its own
-/// reply only. A vehicle belongs to the process that connected: after fork(), the child must
-/// connect.
+/// **Threads**: several threads can call any function; nothing may be freed, and no options
+/// changed, while another thread uses them. If tether_is_concurrent() is 0, calls of one vehicle
+/// take turns: under the barrier, a call during another thread's call ends the run. Under
+/// tether-exec each thread waits for its own reply only. After fork(), the child must connect for
+/// itself.
 ///
 /// **Stability**: within TETHER_CLIENT_ABI_VERSION functions and constants are only added. A struct
 /// that may grow at its end is passed with its size (`sizeof *out`). The library fills the members
