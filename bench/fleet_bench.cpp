@@ -222,8 +222,8 @@ void fly(const link::Address& address, const std::string& uav, bool with_camera,
   client::Vehicle& vehicle = **connected;
   double speed_m_s = 0.2;
   while (vehicle.now() < ExecTime(seconds)) {
-    const bool is_read = with_camera ? static_cast<bool>(vehicle.read_camera("camera"))
-                                     : static_cast<bool>(vehicle.read_imu("imu"));
+    const bool is_read = with_camera ? static_cast<bool>(vehicle.read<uav::CameraSample>("camera"))
+                                     : static_cast<bool>(vehicle.read<uav::ImuSample>("imu"));
     if (!is_read || !vehicle.command_velocity({{speed_m_s, 0.0, 0.0}, 0.1})) break;
     speed_m_s = -speed_m_s;
   }

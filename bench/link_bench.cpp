@@ -281,7 +281,7 @@ void command(benchmark::State& state) {
 void image(benchmark::State& state) {
   const CoordinatorHost host;
   compare(state, kImageBytes, host, [](client::Vehicle& vehicle) -> Status {
-    const auto sample = vehicle.read_camera("camera");
+    const auto sample = vehicle.read<uav::CameraSample>("camera");
     if (!sample) return sample.failure();
     return ok_status();
   });

@@ -39,9 +39,9 @@ void fly(client::Vehicle& vehicle) {
   ExecTime before = vehicle.now();
   for (const Read read : {Read::kNext, Read::kLatest, Read::kIfAvailable}) {
     for (const auto& sensor : vehicle.catalogue().sensors) {
-      calls.made(vehicle.read_camera(sensor.name, read));
-      calls.made(vehicle.read_imu(sensor.name, read));
-      calls.made(vehicle.read_range(sensor.name, read));
+      calls.made(vehicle.read<uav::CameraSample>(sensor.name, read));
+      calls.made(vehicle.read<uav::ImuSample>(sensor.name, read));
+      calls.made(vehicle.read<uav::RangeSample>(sensor.name, read));
     }
     calls.made(vehicle.command_velocity({}));
     calls.made(vehicle.annotate("roi", "{}"));

@@ -11,11 +11,6 @@ namespace {
 /// 146 years: what can be added to any instant since the machine was started.
 constexpr Duration kLongest{std::numeric_limits<std::int64_t>::max() / 2};
 
-Status check(client::Read read) {
-  if (read != client::Read::kIfAvailable) return ok_status();
-  return Failure{Failure::Kind::kInvalid, "reads of a rig always wait; use kNext or kLatest"};
-}
-
 }  // namespace
 
 RigVehicle::RigVehicle(std::unique_ptr<Clock> clock, const Timeline& time, uav::Catalogue catalogue,
@@ -24,15 +19,6 @@ RigVehicle::RigVehicle(std::unique_ptr<Clock> clock, const Timeline& time, uav::
       time_(time),
       catalogue_(std::move(catalogue)),
       devices_(std::move(devices)) {}
-
-template <class T>
-T* RigVehicle::find(std::string_view sensor) {
-  const uav::SensorDescription* const found = catalogue_.find_sensor(sensor);
-  if (found == nullptr) return nullptr;
-  Device& device = devices_[static_cast<std::size_t>(found - catalogue_.sensors.data())];
-  auto* const held = std::get_if<std::unique_ptr<T>>(&device);
-  return held == nullptr ? nullptr : held->get();
-}
 
 Failure RigVehicle::no_such_sensor(std::string_view sensor, uav::SensorKind kind) const {
   std::string there_is;
@@ -45,28 +31,26 @@ Failure RigVehicle::no_such_sensor(std::string_view sensor, uav::SensorKind kind
                                        (there_is.empty() ? "no sensor" : there_is)};
 }
 
-Result<uav::CameraSample> RigVehicle::read_camera(std::string_view sensor, client::Read read) {
+Result<uav::Sample> RigVehicle::read_any(std::string_view sensor, uav::SensorKind kind,
+                                         client::Read read) {
   const std::lock_guard lock(calls_);
-  CameraDevice* const device = find<CameraDevice>(sensor);
-  if (device == nullptr) return no_such_sensor(sensor, uav::SensorKind::kCamera);
-  if (const Status good = check(read); !good) return good.failure();
-  return device->read(read);
-}
-
-Result<uav::ImuSample> RigVehicle::read_imu(std::string_view sensor, client::Read read) {
-  const std::lock_guard lock(calls_);
-  ImuDevice* const device = find<ImuDevice>(sensor);
-  if (device == nullptr) return no_such_sensor(sensor, uav::SensorKind::kImu);
-  if (const Status good = check(read); !good) return good.failure();
-  return device->read();
-}
-
-Result<uav::RangeSample> RigVehicle::read_range(std::string_view sensor, client::Read read) {
-  const std::lock_guard lock(calls_);
-  RangeDevice* const device = find<RangeDevice>(sensor);
-  if (device == nullptr) return no_such_sensor(sensor, uav::SensorKind::kRange);
-  if (const Status good = check(read); !good) return good.failure();
-  return device->read();
+  const uav::SensorDescription* const found = catalogue_.find_sensor(sensor);
+  if (found == nullptr || found->kind() != kind) return no_such_sensor(sensor, kind);
+  if (read == client::Read::kIfAvailable)
+    return Failure{Failure::Kind::kInvalid, "reads of a rig always wait; use kNext or kLatest"};
+  const auto as_sample = [](auto measured) -> Result<uav::Sample> {
+    if (!measured) return measured.failure();
+    return uav::Sample(std::move(*measured));
+  };
+  return std::visit(
+      [&](const auto& device) {
+        if constexpr (requires { device->read(read); }) {
+          return as_sample(device->read(read));
+        } else {
+          return as_sample(device->read());
+        }
+      },
+      devices_[static_cast<std::size_t>(found - catalogue_.sensors.data())]);
 }
 
 Status RigVehicle::command_velocity(const uav::VelocityCommand&) {

@@ -30,9 +30,8 @@ class RigVehicle final : public client::Vehicle {
 
   ExecTime now() const override { return time_.now(); }
   const uav::Catalogue& catalogue() const override { return catalogue_; }
-  Result<uav::CameraSample> read_camera(std::string_view sensor, client::Read read) override;
-  Result<uav::ImuSample> read_imu(std::string_view sensor, client::Read read) override;
-  Result<uav::RangeSample> read_range(std::string_view sensor, client::Read read) override;
+  Result<uav::Sample> read_any(std::string_view sensor, uav::SensorKind kind,
+                               client::Read read) override;
   Status command_velocity(const uav::VelocityCommand& command) override;
   Status sleep_for(Duration duration) override;
   Status sleep_until(ExecTime until) override;
@@ -40,9 +39,6 @@ class RigVehicle final : public client::Vehicle {
   Status finish(bool, std::string_view, std::string_view) override { return ok_status(); }
 
  private:
-  /// Null: no sensor of this kind and name.
-  template <class T>
-  T* find(std::string_view sensor);
   Failure no_such_sensor(std::string_view sensor, uav::SensorKind kind) const;
 
   std::unique_ptr<Clock> clock_;

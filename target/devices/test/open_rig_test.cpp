@@ -46,13 +46,13 @@ TEST_F(OpenRigTest, OpensEveryDevice) {
   EXPECT_NEAR(catalogue.sensors[0].rate_hz, 25.0, 1e-3);
   EXPECT_NE(catalogue.find_anchor("post"), nullptr);
 
-  const auto image = (*vehicle)->read_camera("front");
+  const auto image = (*vehicle)->read<uav::CameraSample>("front");
   ASSERT_TRUE(image);
   EXPECT_EQ(image->width_px, 64);
   EXPECT_GE(image->sampled_at, SimTime{});
   EXPECT_LE(image->sampled_at, same_instant((*vehicle)->now()));
-  EXPECT_DOUBLE_EQ((*vehicle)->read_range("down")->range_m, 0.731);
-  const auto inertial = (*vehicle)->read_imu("imu");
+  EXPECT_DOUBLE_EQ((*vehicle)->read<uav::RangeSample>("down")->range_m, 0.731);
+  const auto inertial = (*vehicle)->read<uav::ImuSample>("imu");
   ASSERT_TRUE(inertial);
   EXPECT_EQ(inertial->specific_force_m_s2, (uav::Vec3{1, 1, 1}));
   EXPECT_EQ(inertial->angular_velocity_rad_s, (uav::Vec3{2, 2, 2}));

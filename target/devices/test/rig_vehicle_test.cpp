@@ -37,7 +37,7 @@ class RigVehicleTest : public testing::Test {
 
 TEST_F(RigVehicleTest, ReadsItsSensors) {
   clock_->advance(std::chrono::milliseconds(7));
-  const auto sample = vehicle_->read_range("down");
+  const auto sample = vehicle_->read<uav::RangeSample>("down");
   ASSERT_TRUE(sample);
   EXPECT_EQ(sample->range_m, 0.5);
   EXPECT_EQ(sample->sampled_at, same_instant(vehicle_->now()));
@@ -46,13 +46,14 @@ TEST_F(RigVehicleTest, ReadsItsSensors) {
 
 TEST_F(RigVehicleTest, RefusesUnknownSensorsPollingAndFlight) {
   for (const Failure& failure :
-       {vehicle_->read_range("up").failure(), vehicle_->read_camera("down").failure(),
-        vehicle_->read_imu("down").failure(),
-        vehicle_->read_range("down", client::Read::kIfAvailable).failure(),
+       {vehicle_->read<uav::RangeSample>("up").failure(),
+        vehicle_->read<uav::CameraSample>("down").failure(),
+        vehicle_->read<uav::ImuSample>("down").failure(),
+        vehicle_->read<uav::RangeSample>("down", client::Read::kIfAvailable).failure(),
         vehicle_->command_velocity({}).failure()}) {
     EXPECT_EQ(failure.kind, Failure::Kind::kInvalid);
   }
-  EXPECT_THAT(vehicle_->read_range("up").failure().message,
+  EXPECT_THAT(vehicle_->read<uav::RangeSample>("up").failure().message,
               AllOf(HasSubstr("\"up\""), HasSubstr("\"down\"")));
   EXPECT_TRUE(vehicle_->annotate("topic", "{}"));
   EXPECT_TRUE(vehicle_->finish(true, "done", "{}"));

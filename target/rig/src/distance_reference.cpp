@@ -57,7 +57,7 @@ Result<DistanceReference> take_distance_reference(client::Vehicle& vehicle,
   if (range == nullptr) return none("there is no rangefinder (--range DEVICE)");
   std::vector<double> readings_m;
   for (int i = 0; i < kReadings; ++i) {
-    const Result<uav::RangeSample> reading = vehicle.read_range(range->name);
+    const Result<uav::RangeSample> reading = vehicle.read<uav::RangeSample>(range->name);
     if (!reading) return reading.failure();
     readings_m.push_back(reading->range_m);
   }

@@ -22,14 +22,9 @@ class InterruptibleVehicle : public client::Vehicle {
   const uav::Catalogue& catalogue() const override { return vehicle_->catalogue(); }
   bool is_concurrent() const override { return vehicle_->is_concurrent(); }
 
-  Result<uav::CameraSample> read_camera(std::string_view sensor, client::Read read) override {
-    return unless_interrupted([&] { return vehicle_->read_camera(sensor, read); });
-  }
-  Result<uav::ImuSample> read_imu(std::string_view sensor, client::Read read) override {
-    return unless_interrupted([&] { return vehicle_->read_imu(sensor, read); });
-  }
-  Result<uav::RangeSample> read_range(std::string_view sensor, client::Read read) override {
-    return unless_interrupted([&] { return vehicle_->read_range(sensor, read); });
+  Result<uav::Sample> read_any(std::string_view sensor, uav::SensorKind kind,
+                               client::Read read) override {
+    return unless_interrupted([&] { return vehicle_->read_any(sensor, kind, read); });
   }
   Result<uav::BatterySample> read_battery() override {
     return unless_interrupted([&] { return vehicle_->read_battery(); });

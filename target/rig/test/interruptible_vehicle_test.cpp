@@ -16,16 +16,16 @@ TEST(InterruptibleVehicle, EndsEveryInteractionOnceInterrupted) {
   const auto vehicle = make_interruptible(std::make_unique<PlanarVehicle>(PlanarVehicle::Options{}),
                                           [&over] { return over; });
   EXPECT_EQ(vehicle->catalogue().uav, "uav");
-  EXPECT_TRUE(vehicle->read_range("range"));
+  EXPECT_TRUE(vehicle->read<uav::RangeSample>("range"));
   EXPECT_TRUE(vehicle->sleep_for(Duration(1)));
   EXPECT_GT(vehicle->now(), ExecTime());
   over = true;
   const ExecTime at = vehicle->now();
-  const auto reading = vehicle->read_range("range");
+  const auto reading = vehicle->read<uav::RangeSample>("range");
   ASSERT_FALSE(reading);
   EXPECT_EQ(reading.failure().kind, Failure::Kind::kRunEnded);
-  EXPECT_FALSE(vehicle->read_camera("camera"));
-  EXPECT_FALSE(vehicle->read_imu("imu"));
+  EXPECT_FALSE(vehicle->read<uav::CameraSample>("camera"));
+  EXPECT_FALSE(vehicle->read<uav::ImuSample>("imu"));
   EXPECT_FALSE(vehicle->command_velocity({}));
   EXPECT_FALSE(vehicle->sleep_for(Duration(1)));
   EXPECT_FALSE(vehicle->sleep_until(ExecTime()));
@@ -58,11 +58,11 @@ TEST(InterruptibleVehicle, ReportsFailureCausedByInterruptAsInterrupt) {
   const auto vehicle = make_interruptible(
       std::make_unique<PlanarVehicle>(PlanarVehicle::Options{.disconnect_at = 0}),
       [&asked] { return ++asked > 1; });
-  EXPECT_EQ(vehicle->read_range("range").failure().kind, Failure::Kind::kRunEnded);
+  EXPECT_EQ(vehicle->read<uav::RangeSample>("range").failure().kind, Failure::Kind::kRunEnded);
   const auto other = make_interruptible(
       std::make_unique<PlanarVehicle>(PlanarVehicle::Options{.disconnect_at = 0}),
       [] { return false; });
-  EXPECT_EQ(other->read_range("range").failure().kind, Failure::Kind::kDisconnected);
+  EXPECT_EQ(other->read<uav::RangeSample>("range").failure().kind, Failure::Kind::kDisconnected);
 }
 
 }  // namespace

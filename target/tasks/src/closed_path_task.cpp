@@ -88,7 +88,7 @@ Progress ClosedPathTask::rest(TaskContext& context) {
     if (const Progress end = limit_.next_round(context.vehicle().now())) {
       return TaskOutcome::not_reached(end->reason + " at rest before the start");
     }
-    const auto reading = context.vehicle().read_imu(options_.imu);
+    const auto reading = context.vehicle().read<uav::ImuSample>(options_.imu);
     if (!reading) return TaskOutcome::failed(reading.failure());
     began_at = began_at.value_or(reading->sampled_at);
     if (reading->sampled_at - *began_at >= options_.rest_time) {
@@ -100,7 +100,7 @@ Progress ClosedPathTask::rest(TaskContext& context) {
 }
 
 Progress ClosedPathTask::read_imu(TaskContext& context) {
-  const auto reading = context.vehicle().read_imu(options_.imu);
+  const auto reading = context.vehicle().read<uav::ImuSample>(options_.imu);
   if (!reading) return TaskOutcome::failed(reading.failure());
   reckon(context, *reading);
   return std::nullopt;

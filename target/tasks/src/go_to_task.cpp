@@ -33,7 +33,7 @@ Progress GoToTask::initialise(TaskContext& context) {
 
 Progress GoToTask::step(TaskContext& context) {
   if (Progress end = limit_.next_round(context.vehicle().now())) return end;
-  const Result<uav::ImuSample> reading = context.vehicle().read_imu(options_.imu);
+  const Result<uav::ImuSample> reading = context.vehicle().read<uav::ImuSample>(options_.imu);
   if (!reading) return TaskOutcome::failed(reading.failure());
   p_H0B_.z += v_up_m_s_ * to_seconds(reading->sampled_at - reckoning_->read_at());
   reckoning_->update(*reading);

@@ -49,7 +49,7 @@ Progress LandTask::sink(TaskContext& context, double speed_m_s) {
 
 Progress LandTask::step(TaskContext& context) {
   if (Progress end = limit_.next_round(context.vehicle().now())) return end;
-  const Result<uav::ImuSample> reading = context.vehicle().read_imu(options_.imu);
+  const Result<uav::ImuSample> reading = context.vehicle().read<uav::ImuSample>(options_.imu);
   if (!reading) return TaskOutcome::failed(reading.failure());
   reckoning_->update(*reading);
   if (reckoning_->read_at() - switched_at_ < kPeriod) return std::nullopt;

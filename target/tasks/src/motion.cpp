@@ -40,13 +40,15 @@ uav::Quat attitude(const uav::SensorDescription& imu, const uav::ImuSample& read
 Result<double> get_yaw(TaskContext& context, std::string_view imu) {
   const auto sensor = context.sensor(imu, uav::SensorKind::kImu);
   if (!sensor) return sensor.failure();
-  const Result<uav::ImuSample> reading = context.vehicle().read_imu(imu, client::Read::kLatest);
+  const Result<uav::ImuSample> reading =
+      context.vehicle().read<uav::ImuSample>(imu, client::Read::kLatest);
   if (!reading) return reading.failure();
   return uav::yaw_rad(attitude(**sensor, *reading));
 }
 
 Status pause(TaskContext& context, const std::string& imu, Duration time) {
-  Result<uav::ImuSample> reading = context.vehicle().read_imu(imu, client::Read::kLatest);
+  Result<uav::ImuSample> reading =
+      context.vehicle().read<uav::ImuSample>(imu, client::Read::kLatest);
   if (!reading) return reading.failure();
   const SimTime began_at = reading->sampled_at;
   SimTime latest = began_at;
@@ -55,7 +57,7 @@ Status pause(TaskContext& context, const std::string& imu, Duration time) {
       return Failure{Failure::Kind::kInvalid,
                      "the readings of IMU \"" + imu + "\" are all from the same instant"};
     }
-    reading = context.vehicle().read_imu(imu);
+    reading = context.vehicle().read<uav::ImuSample>(imu);
     if (!reading) return reading.failure();
     if (reading->sampled_at > latest) {
       latest = reading->sampled_at;
@@ -70,7 +72,7 @@ Progress calibrate(TaskContext& context, const std::string& imu, const Rest& res
   std::optional<SimTime> began_at;
   while (true) {
     if (Progress end = limit.next_round(context.vehicle().now())) return end;
-    const Result<uav::ImuSample> reading = context.vehicle().read_imu(imu);
+    const Result<uav::ImuSample> reading = context.vehicle().read<uav::ImuSample>(imu);
     if (!reading) return TaskOutcome::failed(reading.failure());
     began_at = began_at.value_or(reading->sampled_at);
     const Duration rested = reading->sampled_at - *began_at;

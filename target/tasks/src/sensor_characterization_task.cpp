@@ -14,22 +14,10 @@ struct Place {
   std::uint64_t index = 0;
 };
 
-template <class Sample>
-Result<Place> place_of(const Result<Sample>& sample) {
-  if (!sample) return sample.failure();
-  return Place{sample->sampled_at, sample->index};
-}
-
 Result<Place> acquire(client::Vehicle& vehicle, const std::string& sensor, uav::SensorKind kind) {
-  switch (kind) {
-    case uav::SensorKind::kCamera:
-      return place_of(vehicle.read_camera(sensor));
-    case uav::SensorKind::kImu:
-      return place_of(vehicle.read_imu(sensor));
-    case uav::SensorKind::kRange:
-      break;
-  }
-  return place_of(vehicle.read_range(sensor));
+  const auto sample = vehicle.read_any(sensor, kind, client::Read::kNext);
+  if (!sample) return sample.failure();
+  return std::visit([](const auto& one) { return Place{one.sampled_at, one.index}; }, *sample);
 }
 
 /// What each took, the shortest first.

@@ -89,7 +89,7 @@ Result<vision::AnchorTracker*> TaskContext::tracker(std::string_view anchor_name
 
 Result<uav::CameraSample> TaskContext::capture(const std::string& camera) {
   const client::Stage stage(vehicle_, "capture");
-  return vehicle_.read_camera(camera);
+  return vehicle_.read<uav::CameraSample>(camera);
 }
 
 std::optional<vision::Roi> TaskContext::detect(vision::AnchorTracker& tracker,

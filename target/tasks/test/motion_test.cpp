@@ -56,7 +56,7 @@ TEST(Motion, PauseFollowsTheImusTimestamps) {
   for (const auto period : {std::chrono::milliseconds(1), std::chrono::milliseconds(50)}) {
     Manoeuvre f({.clock_stands_still = true, .imu_period = period});
     ASSERT_TRUE(pause(f.context, "imu", std::chrono::seconds(2)));
-    EXPECT_EQ(f.vehicle.read_imu("imu", client::Read::kLatest)->sampled_at,
+    EXPECT_EQ(f.vehicle.read<uav::ImuSample>("imu", client::Read::kLatest)->sampled_at,
               SimTime(std::chrono::seconds(2)));
   }
   Manoeuvre still({.imu_instants_stand_still = true});

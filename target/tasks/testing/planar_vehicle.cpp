@@ -101,8 +101,16 @@ const PlanarVehicle::State& PlanarVehicle::at(Duration since_start) const {
   return states_[static_cast<std::size_t>(since_start / kStep)];
 }
 
-Result<uav::CameraSample> PlanarVehicle::read_camera(std::string_view sensor, client::Read) {
-  if (const Status status = begin_interaction(sensor, "camera"); !status) return status.failure();
+Result<uav::Sample> PlanarVehicle::read_any(std::string_view sensor, uav::SensorKind kind,
+                                            client::Read read) {
+  if (const Status status = begin_interaction(sensor, uav::name(kind)); !status)
+    return status.failure();
+  if (kind == uav::SensorKind::kCamera) return uav::Sample(image());
+  if (kind == uav::SensorKind::kImu) return uav::Sample(motion(read));
+  return uav::Sample(range());
+}
+
+uav::CameraSample PlanarVehicle::image() {
   // The newest image that is there, or the next one to come.
   const Duration since_start = now_.time_since_epoch() - options_.image_delay;
   std::uint64_t index = 0;
@@ -128,8 +136,7 @@ Result<uav::CameraSample> PlanarVehicle::read_camera(std::string_view sensor, cl
   return image;
 }
 
-Result<uav::ImuSample> PlanarVehicle::read_imu(std::string_view sensor, client::Read read) {
-  if (const Status status = begin_interaction(sensor, "imu"); !status) return status.failure();
+uav::ImuSample PlanarVehicle::motion(client::Read read) {
   auto index = static_cast<std::uint64_t>(now_.time_since_epoch() / options_.imu_period);
   if (read == client::Read::kNext && last_imu_ && index <= *last_imu_) index = *last_imu_ + 1;
   last_imu_ = index;
@@ -148,8 +155,7 @@ Result<uav::ImuSample> PlanarVehicle::read_imu(std::string_view sensor, client::
   return reading;
 }
 
-Result<uav::RangeSample> PlanarVehicle::read_range(std::string_view sensor, client::Read) {
-  if (const Status status = begin_interaction(sensor, "range"); !status) return status.failure();
+uav::RangeSample PlanarVehicle::range() {
   uav::RangeSample reading;
   reading.sampled_at = SimTime(now_.time_since_epoch());
   reading.index = ranges_read_++;

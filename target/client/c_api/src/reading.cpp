@@ -25,24 +25,23 @@ std::optional<Read> from_c(tether_read_mode mode) {
   }
 }
 
-/// Reads by `method` of the vehicle and gives the sample to `take`, which returns a status.
-template <class Method, class Take>
-tether_status read(tether_vehicle* vehicle, const char* sensor, tether_read_mode mode,
-                   Method method, Take take) {
+/// Reads a sensor and gives the sample to `take`, which returns a status.
+template <class Sample, class Take>
+tether_status read(tether_vehicle* vehicle, const char* sensor, tether_read_mode mode, Take take) {
   const auto wanted = from_c(mode);
   if (!wanted) return fail(TETHER_INVALID, "unknown read mode; use one of TETHER_READ_...");
   return guarded([&] {
-    auto sample = (vehicle->vehicle.get()->*method)(sensor, *wanted);
+    auto sample = vehicle->vehicle->read<Sample>(sensor, *wanted);
     return sample ? take(std::move(*sample)) : fail(sample.failure());
   });
 }
 
 /// For samples that are a plain struct.
-template <class CStruct, class Method>
+template <class Sample, class CStruct>
 tether_status read_struct(tether_vehicle* vehicle, const char* sensor, tether_read_mode mode,
-                          Method method, CStruct* out, std::size_t size) {
+                          CStruct* out, std::size_t size) {
   if (!can_take(out, size) || !are_given(vehicle, sensor)) return TETHER_INVALID;
-  return read(vehicle, sensor, mode, method, [&](const auto& sample) {
+  return read<Sample>(vehicle, sensor, mode, [&](const Sample& sample) {
     put(to_c(sample), out, size);
     return TETHER_OK;
   });
@@ -88,11 +87,11 @@ tether_status tether_read_camera(tether_vehicle* vehicle, const char* sensor, te
   if (!are_given(out)) return TETHER_INVALID;
   *out = nullptr;
   if (!are_given(vehicle, sensor)) return TETHER_INVALID;
-  return read(vehicle, sensor, mode, &tether::client::Vehicle::read_camera,
-              [&](tether::uav::CameraSample sample) {
-                *out = new tether_image(std::move(sample));
-                return TETHER_OK;
-              });
+  return read<tether::uav::CameraSample>(vehicle, sensor, mode,
+                                         [&](tether::uav::CameraSample sample) {
+                                           *out = new tether_image(std::move(sample));
+                                           return TETHER_OK;
+                                         });
 }
 
 tether_status tether_image_copy(const tether_image* image, tether_image** out) noexcept {
@@ -133,24 +132,23 @@ tether_status tether_read_camera_into(tether_vehicle* vehicle, const char* senso
   if (!are_given(vehicle, sensor, rgb)) return TETHER_INVALID;
   if (const tether_status fits = check_capacity(*vehicle, sensor, capacity); fits != TETHER_OK)
     return fits;
-  return read(vehicle, sensor, mode, &tether::client::Vehicle::read_camera,
-              [&](const auto& sample) {
-                if (sample.rgb.size() > capacity)
-                  return fail(TETHER_PROTOCOL, "the image is larger than the camera's");
-                std::memcpy(rgb, sample.rgb.data(), sample.rgb.size());
-                if (info != nullptr) put(to_c(sample), info, info_size);
-                return tether_status{TETHER_OK};
-              });
+  return read<tether::uav::CameraSample>(vehicle, sensor, mode, [&](const auto& sample) {
+    if (sample.rgb.size() > capacity)
+      return fail(TETHER_PROTOCOL, "the image is larger than the camera's");
+    std::memcpy(rgb, sample.rgb.data(), sample.rgb.size());
+    if (info != nullptr) put(to_c(sample), info, info_size);
+    return tether_status{TETHER_OK};
+  });
 }
 
 tether_status tether_read_imu(tether_vehicle* vehicle, const char* sensor, tether_read_mode mode,
                               tether_imu_sample* out, size_t size) noexcept {
-  return read_struct(vehicle, sensor, mode, &tether::client::Vehicle::read_imu, out, size);
+  return read_struct<tether::uav::ImuSample>(vehicle, sensor, mode, out, size);
 }
 
 tether_status tether_read_range(tether_vehicle* vehicle, const char* sensor, tether_read_mode mode,
                                 tether_range_sample* out, size_t size) noexcept {
-  return read_struct(vehicle, sensor, mode, &tether::client::Vehicle::read_range, out, size);
+  return read_struct<tether::uav::RangeSample>(vehicle, sensor, mode, out, size);
 }
 
 tether_status tether_read_battery(tether_vehicle* vehicle, tether_battery_sample* out,

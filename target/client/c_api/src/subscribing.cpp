@@ -15,21 +15,6 @@ struct tether_subscription {
 
 namespace {
 
-/// Subscribes by `subscribe`, one function of target/client, with a callback that it understands.
-template <class Subscribe, class Callback>
-tether_status subscribe_by(Subscribe subscribe, tether_vehicle* vehicle, const char* sensor,
-                           Callback callback, tether_subscription** out) {
-  return guarded([&] {
-    // Made first, so that nothing is undone when memory runs out.
-    auto made = std::make_unique<tether_subscription>();
-    auto subscription = subscribe(*vehicle->vehicle, sensor, std::move(callback));
-    if (!subscription) return fail(subscription.failure());
-    made->subscription = std::move(*subscription);
-    *out = made.release();
-    return tether_status{TETHER_OK};
-  });
-}
-
 /// Clears *out; whether everything is there.
 bool can_subscribe(const tether_vehicle* vehicle, const char* sensor, bool has_callback,
                    tether_subscription** out) {
@@ -39,6 +24,33 @@ bool can_subscribe(const tether_vehicle* vehicle, const char* sensor, bool has_c
   return has_callback && are_given(vehicle, sensor);
 }
 
+/// @param show  the sample to the callback of C
+template <class Sample, class Show>
+tether_status subscribe(tether_vehicle* vehicle, const char* sensor, bool has_callback, Show show,
+                        tether_subscription** out) {
+  if (!can_subscribe(vehicle, sensor, has_callback, out)) return TETHER_INVALID;
+  return guarded([&] {
+    // Made first, so that nothing is undone when memory runs out.
+    auto made = std::make_unique<tether_subscription>();
+    auto subscription = tether::client::subscribe<Sample>(*vehicle->vehicle, sensor, show);
+    if (!subscription) return fail(subscription.failure());
+    made->subscription = std::move(*subscription);
+    *out = made.release();
+    return tether_status{TETHER_OK};
+  });
+}
+
+/// For samples that are a plain struct.
+template <class Sample, class Callback>
+tether_status subscribe_struct(tether_vehicle* vehicle, const char* sensor, Callback callback,
+                               void* user, tether_subscription** out) {
+  const auto show = [=](const Sample& sample) {
+    const auto shown = to_c(sample);
+    callback(&shown, user);
+  };
+  return subscribe<Sample>(vehicle, sensor, callback != nullptr, show, out);
+}
+
 }  // namespace
 
 extern "C" {
@@ -46,34 +58,23 @@ extern "C" {
 tether_status tether_subscribe_camera(tether_vehicle* vehicle, const char* sensor,
                                       tether_on_image on_image, void* user,
                                       tether_subscription** out) noexcept {
-  if (!can_subscribe(vehicle, sensor, on_image != nullptr, out)) return TETHER_INVALID;
   const auto show = [=](const tether::uav::CameraSample& sample) {
     const tether_image shown(&sample);
     on_image(&shown, user);
   };
-  return subscribe_by(tether::client::subscribe_camera, vehicle, sensor, show, out);
+  return subscribe<tether::uav::CameraSample>(vehicle, sensor, on_image != nullptr, show, out);
 }
 
 tether_status tether_subscribe_imu(tether_vehicle* vehicle, const char* sensor,
                                    tether_on_imu on_sample, void* user,
                                    tether_subscription** out) noexcept {
-  if (!can_subscribe(vehicle, sensor, on_sample != nullptr, out)) return TETHER_INVALID;
-  const auto show = [=](const tether::uav::ImuSample& sample) {
-    const tether_imu_sample shown = to_c(sample);
-    on_sample(&shown, user);
-  };
-  return subscribe_by(tether::client::subscribe_imu, vehicle, sensor, show, out);
+  return subscribe_struct<tether::uav::ImuSample>(vehicle, sensor, on_sample, user, out);
 }
 
 tether_status tether_subscribe_range(tether_vehicle* vehicle, const char* sensor,
                                      tether_on_range on_sample, void* user,
                                      tether_subscription** out) noexcept {
-  if (!can_subscribe(vehicle, sensor, on_sample != nullptr, out)) return TETHER_INVALID;
-  const auto show = [=](const tether::uav::RangeSample& sample) {
-    const tether_range_sample shown = to_c(sample);
-    on_sample(&shown, user);
-  };
-  return subscribe_by(tether::client::subscribe_range, vehicle, sensor, show, out);
+  return subscribe_struct<tether::uav::RangeSample>(vehicle, sensor, on_sample, user, out);
 }
 
 tether_status tether_subscription_status(const tether_subscription* subscription) noexcept {

@@ -48,13 +48,10 @@ class FakeVehicle final : public client::Vehicle {
   const uav::Catalogue& catalogue() const override { return catalogue_; }
   bool is_concurrent() const override { return concurrent; }
 
-  Result<uav::CameraSample> read_camera(std::string_view sensor, client::Read read) override {
-    return answer(sensor, read, image);
-  }
-  Result<uav::ImuSample> read_imu(std::string_view sensor, client::Read read) override {
-    return answer(sensor, read, imu);
-  }
-  Result<uav::RangeSample> read_range(std::string_view sensor, client::Read read) override {
+  Result<uav::Sample> read_any(std::string_view sensor, uav::SensorKind kind,
+                               client::Read read) override {
+    if (kind == uav::SensorKind::kCamera) return answer(sensor, read, image);
+    if (kind == uav::SensorKind::kImu) return answer(sensor, read, imu);
     return answer(sensor, read, range);
   }
   Result<uav::BatterySample> read_battery() override {
@@ -107,12 +104,12 @@ class FakeVehicle final : public client::Vehicle {
 
  private:
   template <class Sample>
-  Result<Sample> answer(std::string_view sensor, client::Read read, const Sample& sample) {
+  Result<uav::Sample> answer(std::string_view sensor, client::Read read, const Sample& sample) {
     if (out_of_memory) throw std::bad_alloc();
     reads.emplace_back(sensor, read);
     if (failure) return *failure;
     if (reads_left && (*reads_left)-- == 0) return Failure{Failure::Kind::kRunEnded, "time limit"};
-    return sample;
+    return uav::Sample(sample);
   }
   Status say(std::string text) {
     said.push_back(std::move(text));

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <string>
-#include <type_traits>
 #include <utility>
 #include <variant>
 
@@ -13,14 +12,6 @@
 // the catalogue, and checking replies against the rules of time (docs/design.md section 2).
 namespace tether::client {
 namespace {
-
-/// The sensor kind that delivers a sample type; samples and sensor kinds are in the same order.
-template <class Sample>
-constexpr uav::SensorKind kind_of() {
-  if constexpr (std::is_same_v<Sample, uav::CameraSample>) return uav::SensorKind::kCamera;
-  if constexpr (std::is_same_v<Sample, uav::ImuSample>) return uav::SensorKind::kImu;
-  return uav::SensorKind::kRange;
-}
 
 /// Of a camera: whether the image has the size and the arrays that the catalogue promised.
 Status check_image(const uav::Sample& sample, const uav::SensorDescription& sensor) {
@@ -117,12 +108,10 @@ Status InteractingVehicle::usable() const {
 
 // --- sensors ------------------------------------------------------------------------------------
 
-template <class Sample>
-Result<Sample> InteractingVehicle::read(std::string_view sensor, Read read) {
+Result<uav::Sample> InteractingVehicle::read_any(std::string_view sensor, uav::SensorKind kind,
+                                                 Read read) {
   const uav::SensorDescription* const found = catalogue_.find_sensor(sensor);
-  if (found == nullptr || found->kind() != kind_of<Sample>()) {
-    return no_such_sensor(sensor, kind_of<Sample>());
-  }
+  if (found == nullptr || found->kind() != kind) return no_such_sensor(sensor, kind);
   if (read == Read::kIfAvailable && found->rate_hz <= 0.0) {
     return Failure{Failure::Kind::kInvalid,
                    "'" + found->name +
@@ -132,21 +121,19 @@ Result<Sample> InteractingVehicle::read(std::string_view sensor, Read read) {
   const auto index = static_cast<std::uint32_t>(found - catalogue_.sensors.data());
   auto reply = interact(link::ReadSensor{index, read == Read::kLatest, read == Read::kIfAvailable});
   if (!reply) return reply.failure();
-  return take_sample<Sample>(std::move(*reply), *found, read);
+  return take_sample(std::move(*reply), *found, read);
 }
 
-template <class Sample>
-Result<Sample> InteractingVehicle::take_sample(link::Reply reply,
-                                               const uav::SensorDescription& sensor, Read read) {
+Result<uav::Sample> InteractingVehicle::take_sample(link::Reply reply,
+                                                    const uav::SensorDescription& sensor,
+                                                    Read read) {
   if (!reply.sample && read == Read::kIfAvailable) {
     return Failure{Failure::Kind::kNothingYet, "'" + sensor.name + "' has no new measurement yet"};
   }
-  auto* const sample = reply.sample ? std::get_if<Sample>(&*reply.sample) : nullptr;
-  if (sample == nullptr) {
+  if (!reply.sample || reply.sample->index() != static_cast<std::size_t>(sensor.kind()))
     return give_up(protocol_failure("it has no sample of sensor '" + sensor.name + "'"));
-  }
   if (const Status good = check_image(*reply.sample, sensor); !good) return give_up(good.failure());
-  return std::move(*sample);
+  return std::move(*reply.sample);
 }
 
 Failure InteractingVehicle::no_such_sensor(std::string_view sensor, uav::SensorKind kind) const {
@@ -157,16 +144,6 @@ Failure InteractingVehicle::no_such_sensor(std::string_view sensor, uav::SensorK
   return {Failure::Kind::kInvalid, "there is no " + std::string(uav::name(kind)) + " '" +
                                        std::string(sensor) + "'; this UAV has " +
                                        (available.empty() ? "no sensors" : available)};
-}
-
-Result<uav::CameraSample> InteractingVehicle::read_camera(std::string_view sensor, Read read) {
-  return this->read<uav::CameraSample>(sensor, read);
-}
-Result<uav::ImuSample> InteractingVehicle::read_imu(std::string_view sensor, Read read) {
-  return this->read<uav::ImuSample>(sensor, read);
-}
-Result<uav::RangeSample> InteractingVehicle::read_range(std::string_view sensor, Read read) {
-  return this->read<uav::RangeSample>(sensor, read);
 }
 
 Result<uav::BatterySample> InteractingVehicle::read_battery() {

@@ -36,9 +36,7 @@ std::string name_of_call(const decltype(link::Request::body)& body,
 class InteractingVehicle : public Vehicle {
  public:
   const uav::Catalogue& catalogue() const final { return catalogue_; }
-  Result<uav::CameraSample> read_camera(std::string_view sensor, Read read) final;
-  Result<uav::ImuSample> read_imu(std::string_view sensor, Read read) final;
-  Result<uav::RangeSample> read_range(std::string_view sensor, Read read) final;
+  Result<uav::Sample> read_any(std::string_view sensor, uav::SensorKind kind, Read read) final;
   Result<uav::BatterySample> read_battery() final;
   Status command_velocity(const uav::VelocityCommand& command) final;
   const std::vector<std::string>& peers() const final { return peers_; }
@@ -68,10 +66,8 @@ class InteractingVehicle : public Vehicle {
   Status usable() const;
 
  private:
-  template <class Sample>
-  Result<Sample> read(std::string_view sensor, Read read);
-  template <class Sample>
-  Result<Sample> take_sample(link::Reply reply, const uav::SensorDescription& sensor, Read read);
+  Result<uav::Sample> take_sample(link::Reply reply, const uav::SensorDescription& sensor,
+                                  Read read);
   Failure no_such_sensor(std::string_view sensor, uav::SensorKind kind) const;
 
   uav::Catalogue catalogue_;

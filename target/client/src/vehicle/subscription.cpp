@@ -21,19 +21,17 @@ struct State {
   std::optional<Failure> ended;  // guarded by mutex
 };
 
-template <class Sample>
 struct Reading {
   Vehicle& vehicle;
-  Result<Sample> (Vehicle::*read)(std::string_view, Read);
   std::string sensor;
-  std::function<void(const Sample&)> on_measurement;
+  uav::SensorKind kind;
+  std::function<void(const uav::Sample&)> on_measurement;
 };
 
-template <class Sample>
-void run(State& state, const Reading<Sample>& reading) {
+void run(State& state, const Reading& reading) {
   const Cancellation::Scope scope(state.cancellation);
   while (!state.cancellation.is_cancelled()) {
-    const auto sample = (reading.vehicle.*reading.read)(reading.sensor, Read::kNext);
+    const auto sample = reading.vehicle.read_any(reading.sensor, reading.kind, Read::kNext);
     if (!sample) {
       const std::lock_guard lock(state.mutex);
       state.ended = sample.failure();
@@ -45,8 +43,7 @@ void run(State& state, const Reading<Sample>& reading) {
 
 class ThreadedSubscription final : public Subscription {
  public:
-  template <class Sample>
-  explicit ThreadedSubscription(Reading<Sample> reading) {
+  explicit ThreadedSubscription(Reading reading) {
     const SignalsBlocked blocked;
     thread_ = std::thread([state = state_, reading = std::move(reading)] { run(*state, reading); });
   }
@@ -82,38 +79,14 @@ Status check(const Vehicle& vehicle, std::string_view sensor, uav::SensorKind ki
   return failure("subscriptions need tether-exec; start this program with it");
 }
 
-template <class Sample>
-Result<std::unique_ptr<Subscription>> subscribe(Reading<Sample> reading, uav::SensorKind kind) {
-  if (const Status good = check(reading.vehicle, reading.sensor, kind); !good) {
-    return good.failure();
-  }
-  return std::unique_ptr<Subscription>(std::make_unique<ThreadedSubscription>(std::move(reading)));
-}
-
 }  // namespace
 
-Result<std::unique_ptr<Subscription>> subscribe_camera(
-    Vehicle& vehicle, std::string_view sensor,
-    std::function<void(const uav::CameraSample&)> on_measurement) {
-  return subscribe(Reading<uav::CameraSample>{vehicle, &Vehicle::read_camera, std::string(sensor),
-                                              std::move(on_measurement)},
-                   uav::SensorKind::kCamera);
-}
-
-Result<std::unique_ptr<Subscription>> subscribe_imu(
-    Vehicle& vehicle, std::string_view sensor,
-    std::function<void(const uav::ImuSample&)> on_measurement) {
-  return subscribe(Reading<uav::ImuSample>{vehicle, &Vehicle::read_imu, std::string(sensor),
-                                           std::move(on_measurement)},
-                   uav::SensorKind::kImu);
-}
-
-Result<std::unique_ptr<Subscription>> subscribe_range(
-    Vehicle& vehicle, std::string_view sensor,
-    std::function<void(const uav::RangeSample&)> on_measurement) {
-  return subscribe(Reading<uav::RangeSample>{vehicle, &Vehicle::read_range, std::string(sensor),
-                                             std::move(on_measurement)},
-                   uav::SensorKind::kRange);
+Result<std::unique_ptr<Subscription>> subscribe_any(
+    Vehicle& vehicle, std::string_view sensor, uav::SensorKind kind,
+    std::function<void(const uav::Sample&)> on_measurement) {
+  if (const Status good = check(vehicle, sensor, kind); !good) return good.failure();
+  return std::unique_ptr<Subscription>(std::make_unique<ThreadedSubscription>(
+      Reading{vehicle, std::string(sensor), kind, std::move(on_measurement)}));
 }
 
 }  // namespace tether::client

@@ -26,7 +26,7 @@ TEST(ConcurrentVehicle, EachThreadUsesItsOwnConnection) {
       for (int k = 0; k < 50; ++k) {
         const ExecTime before = vehicle->now();
         ASSERT_GE(before, ExecTime(1s));
-        const auto reading = vehicle->read_imu("imu");
+        const auto reading = vehicle->read<uav::ImuSample>("imu");
         ASSERT_TRUE(reading.ok()) << reading.failure().message;
         ASSERT_GE(reading->sampled_at, same_instant(before));
         ASSERT_TRUE(vehicle->command_velocity({}).ok());
@@ -45,9 +45,10 @@ TEST(ConcurrentVehicle, WaitingCallBlocksNoOtherAndEndsWithTheConnection) {
     const auto kind = is_refused ? Failure::Kind::kRunEnded : Failure::Kind::kDisconnected;
     FakeExec exec(all_but_the_rangefinder);
     const auto vehicle = exec.connect();
-    std::thread waiting([&] { EXPECT_EQ(vehicle->read_range("down").failure().kind, kind); });
+    std::thread waiting(
+        [&] { EXPECT_EQ(vehicle->read<uav::RangeSample>("down").failure().kind, kind); });
     wait_for([&] { return exec.requests() == 1; });
-    EXPECT_TRUE(vehicle->read_imu("imu").ok());
+    EXPECT_TRUE(vehicle->read<uav::ImuSample>("imu").ok());
     if (is_refused) {
       exec.end(link::Refusal{link::Refusal::Reason::kRunEnded, "the time is up"});
     } else {
@@ -65,7 +66,8 @@ TEST(ConcurrentVehicle, EndOfSubscriptionDoesNotAffectOtherCalls) {
   const auto vehicle = exec.connect();
   for (int i = 0; i < 100; ++i) {
     std::atomic<int> count = 0;
-    auto subscription = subscribe_imu(*vehicle, "imu", [&](const uav::ImuSample&) { ++count; });
+    auto subscription =
+        subscribe<uav::ImuSample>(*vehicle, "imu", [&](const uav::ImuSample&) { ++count; });
     ASSERT_TRUE(subscription.ok());
     wait_for([&] { return count > 0; });
     subscription->reset();
@@ -113,7 +115,7 @@ TEST(ConcurrentVehicle, SleepsAtTheCoordinatorInFreeRunningAndRefusesCallsAfterF
     EXPECT_EQ(absolute.until, ExecTime(5s));
   }
   EXPECT_TRUE(vehicle->finish(true, "done", "").ok());
-  EXPECT_EQ(vehicle->read_imu("imu").failure().kind, Failure::Kind::kInvalid);
+  EXPECT_EQ(vehicle->read<uav::ImuSample>("imu").failure().kind, Failure::Kind::kInvalid);
 }
 
 TEST(ConcurrentVehicle, ReportsWhyItCannotConnect) {

@@ -63,9 +63,10 @@ TEST_F(SimulatedVehicleTest, ReadsEachSensorByItsIndex) {
     if (read.sensor == 2) sample = uav::RangeSample{SimTime{}, 2, 1.5};
     return one(Reply{r.sequence, r.issued_at, sample});
   });
-  EXPECT_EQ(vehicle_->read_camera("camera", Read::kNext)->rgb, kImage.rgb);
-  EXPECT_EQ(vehicle_->read_imu("imu", Read::kNext)->angular_velocity_rad_s, (uav::Vec3{1, 2, 3}));
-  EXPECT_EQ(vehicle_->read_range("down", Read::kLatest)->range_m, 1.5);
+  EXPECT_EQ(vehicle_->read<uav::CameraSample>("camera", Read::kNext)->rgb, kImage.rgb);
+  EXPECT_EQ(vehicle_->read<uav::ImuSample>("imu", Read::kNext)->angular_velocity_rad_s,
+            (uav::Vec3{1, 2, 3}));
+  EXPECT_EQ(vehicle_->read<uav::RangeSample>("down", Read::kLatest)->range_m, 1.5);
   const auto requests = coordinator_->requests();
   ASSERT_EQ(requests.size(), 3u);
   EXPECT_FALSE(std::get<link::ReadSensor>(requests[1].body).latest);
@@ -80,19 +81,23 @@ TEST_F(SimulatedVehicleTest, ReadsWhatIsAvailable) {
     if (!first) reply.sample = uav::RangeSample{SimTime{}, 2, 1.5};
     return one(reply);
   });
-  expect_failure(vehicle_->read_range("down", Read::kIfAvailable), Failure::Kind::kNothingYet);
-  EXPECT_EQ(vehicle_->read_range("down", Read::kIfAvailable)->range_m, 1.5);
+  expect_failure(vehicle_->read<uav::RangeSample>("down", Read::kIfAvailable),
+                 Failure::Kind::kNothingYet);
+  EXPECT_EQ(vehicle_->read<uav::RangeSample>("down", Read::kIfAvailable)->range_m, 1.5);
   EXPECT_TRUE(std::get<link::ReadSensor>(coordinator_->requests()[0].body).only_if_available);
-  expect_failure(vehicle_->read_imu("imu", Read::kIfAvailable), Failure::Kind::kInvalid);
+  expect_failure(vehicle_->read<uav::ImuSample>("imu", Read::kIfAvailable),
+                 Failure::Kind::kInvalid);
   EXPECT_FALSE(vehicle_->is_concurrent());
 }
 
 TEST_F(SimulatedVehicleTest, SendsNothingForWrongArguments) {
   start();
   for (const std::string name : {"nose", "imu"}) {
-    expect_failure(vehicle_->read_camera(name, Read::kNext), Failure::Kind::kInvalid, name);
+    expect_failure(vehicle_->read<uav::CameraSample>(name, Read::kNext), Failure::Kind::kInvalid,
+                   name);
   }
-  expect_failure(vehicle_->read_range("x", Read::kNext), Failure::Kind::kInvalid, "camera");
+  expect_failure(vehicle_->read<uav::RangeSample>("x", Read::kNext), Failure::Kind::kInvalid,
+                 "camera");
   expect_failure(vehicle_->command_velocity({{1e9, 0, 0}, 0}), Failure::Kind::kInvalid);
   expect_failure(vehicle_->annotate("roi", "nonsense"), Failure::Kind::kInvalid);
   EXPECT_TRUE(coordinator_->requests().empty());
@@ -245,7 +250,8 @@ TEST_F(SimulatedVehicleTest, RefusesRepliesThatBreakTheRules) {
     source_ = ManualTimeSource(computer::ClockKind::kCpu, 4.0);
     start(answer);
     source_.advance(1ms);
-    expect_failure(vehicle_->read_camera("camera", Read::kNext), Failure::Kind::kProtocol);
+    expect_failure(vehicle_->read<uav::CameraSample>("camera", Read::kNext),
+                   Failure::Kind::kProtocol);
     expect_failure(vehicle_->command_velocity({}), Failure::Kind::kProtocol);
   }
 }

@@ -125,7 +125,7 @@ TEST_P(RandomFlight, PartsAddUpToWhatWasComputed) {
     } else if (step == 5) {
       ASSERT_TRUE(vehicle->sleep_for(Duration(random.bits() % 1000)).ok());
     } else if (step == 6) {
-      ASSERT_TRUE(vehicle->read_range("down", Read::kNext).ok());
+      ASSERT_TRUE(vehicle->read<uav::RangeSample>("down", Read::kNext).ok());
     }
     EXPECT_GE(vehicle->now(), before);
     before = vehicle->now();

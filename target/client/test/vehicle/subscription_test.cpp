@@ -17,7 +17,7 @@ TEST(Subscription, CallsBackWithEachMeasurementUntilTheRunEnds) {
   FakeExec exec(grant);
   const auto vehicle = exec.connect();
   std::atomic<std::uint64_t> calls = 0;
-  const auto subscription = subscribe_range(
+  const auto subscription = subscribe<uav::RangeSample>(
       *vehicle, "down", [&](const uav::RangeSample& sample) { EXPECT_EQ(sample.index, ++calls); });
   ASSERT_TRUE(subscription.ok());
   wait_for([&] { return calls >= 20; });
@@ -31,12 +31,13 @@ TEST(Subscription, EndsWhileItsThreadWaitsForAMeasurement) {
   FakeExec exec(all_but_the_rangefinder);
   const auto vehicle = exec.connect();
   std::atomic<int> calls = 0;
-  auto subscription = subscribe_range(*vehicle, "down", [&](const uav::RangeSample&) { ++calls; });
+  auto subscription =
+      subscribe<uav::RangeSample>(*vehicle, "down", [&](const uav::RangeSample&) { ++calls; });
   ASSERT_TRUE(subscription.ok());
   wait_for([&] { return exec.requests() == 1; });
   subscription->reset();
   EXPECT_EQ(calls, 0);
-  EXPECT_TRUE(vehicle->read_imu("imu").ok());
+  EXPECT_TRUE(vehicle->read<uav::ImuSample>("imu").ok());
 }
 
 TEST(Subscription, CanEndWithinItsCallback) {
@@ -47,7 +48,7 @@ TEST(Subscription, CanEndWithinItsCallback) {
   std::condition_variable gone;
   bool is_gone = false;
   std::unique_lock lock(mutex);
-  auto made = subscribe_range(*vehicle, "down", [&](const uav::RangeSample&) {
+  auto made = subscribe<uav::RangeSample>(*vehicle, "down", [&](const uav::RangeSample&) {
     const std::lock_guard inner(mutex);
     subscription.reset();
     is_gone = true;
@@ -68,10 +69,10 @@ TEST(Subscription, NeedsAPeriodicSensorOfItsKindAndTetherExec) {
   FakeExec exec(grant);
   const auto vehicle = exec.connect();
   for (const char* sensor : {"up", "imu", "side"}) {
-    expect_invalid(subscribe_range(*vehicle, sensor, on_range));
+    expect_invalid(subscribe<uav::RangeSample>(*vehicle, sensor, on_range));
   }
-  expect_invalid(subscribe_imu(*vehicle, "down", [](const uav::ImuSample&) {}));
-  expect_invalid(subscribe_camera(*vehicle, "down", [](const uav::CameraSample&) {}));
+  expect_invalid(subscribe<uav::ImuSample>(*vehicle, "down", [](const uav::ImuSample&) {}));
+  expect_invalid(subscribe<uav::CameraSample>(*vehicle, "down", [](const uav::CameraSample&) {}));
   ScriptedCoordinator coordinator(welcome_with_sensors());
   ConnectOptions options;
   options.time = make_wall_source();

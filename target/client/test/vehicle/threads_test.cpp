@@ -38,12 +38,12 @@ void call_a_lot(Vehicle& vehicle, ManualTimeSource source, std::mutex& turn) {
   for (int i = 0; i < kRounds; ++i) {
     const std::lock_guard lock(turn);
     source.advance(1us);
-    EXPECT_TRUE(vehicle.read_imu("imu").ok());
+    EXPECT_TRUE(vehicle.read<uav::ImuSample>("imu").ok());
     const ExecTime before = vehicle.now();
     EXPECT_TRUE(vehicle.sleep_for(1ms).ok());
     EXPECT_TRUE(vehicle.annotate("task", "{}").ok());
     EXPECT_TRUE(vehicle.command_velocity({}).ok());
-    EXPECT_EQ(vehicle.read_range("down", Read::kIfAvailable).failure().kind,
+    EXPECT_EQ(vehicle.read<uav::RangeSample>("down", Read::kIfAvailable).failure().kind,
               Failure::Kind::kNothingYet);
     EXPECT_GE(vehicle.now(), before + 3ms);
   }
@@ -84,7 +84,8 @@ TEST(SerialVehicle, ACallDuringTheCallOfAnotherThreadEndsTheRun) {
   SimulatedVehicle vehicle(coordinator.connect(), welcome,
                            std::make_unique<ManualTimeSource>(computer::ClockKind::kCpu),
                            std::make_unique<FakeWallTimer>(), Duration::zero());
-  std::thread first([&] { EXPECT_TRUE(static_cast<Vehicle&>(vehicle).read_imu("imu").ok()); });
+  std::thread first(
+      [&] { EXPECT_TRUE(static_cast<Vehicle&>(vehicle).read<uav::ImuSample>("imu").ok()); });
   has_begun.get_future().wait();
   std::thread release([&] {
     std::this_thread::sleep_for(50ms);

@@ -8,9 +8,7 @@ namespace {
 struct Deaf final : Vehicle {
   ExecTime now() const override { return {}; }
   const uav::Catalogue& catalogue() const override { return catalogue_; }
-  Result<uav::CameraSample> read_camera(std::string_view, Read) override { return none(); }
-  Result<uav::ImuSample> read_imu(std::string_view, Read) override { return none(); }
-  Result<uav::RangeSample> read_range(std::string_view, Read) override { return none(); }
+  Result<uav::Sample> read_any(std::string_view, uav::SensorKind, Read) override { return none(); }
   Status command_velocity(const uav::VelocityCommand&) override { return none(); }
   Status sleep_for(Duration) override { return none(); }
   Status sleep_until(ExecTime) override { return none(); }

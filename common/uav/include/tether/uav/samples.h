@@ -4,10 +4,12 @@
 #include <limits>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <variant>
 #include <vector>
 
 #include <tether/base/time.h>
+#include <tether/uav/catalogue.h>
 #include <tether/uav/math.h>
 
 namespace tether::uav {
@@ -65,7 +67,17 @@ struct BatterySample {
   friend bool operator==(const BatterySample&, const BatterySample&) = default;
 };
 
+/// In the order of SensorKind.
 using Sample = std::variant<CameraSample, ImuSample, RangeSample>;
+/// The kind of sensor that measures such samples.
+template <class OneSample>
+constexpr SensorKind kind_of() {
+  return []<class... Samples>(std::type_identity<std::variant<Samples...>>) {
+    int index = 0;
+    (void)((std::is_same_v<Samples, OneSample> || (++index, false)) || ...);
+    return static_cast<SensorKind>(index);
+  }(std::type_identity<Sample>{});
+}
 
 SimTime sampled_at(const Sample& sample);
 

@@ -41,15 +41,18 @@ class Subscription {
 /// Fails with kInvalid if the vehicle is not concurrent (the program was not started with
 /// tether-exec), the UAV has no such sensor, or it measures on demand.
 /// @{
-Result<std::unique_ptr<Subscription>> subscribe_camera(
-    Vehicle& vehicle, std::string_view sensor,
-    std::function<void(const uav::CameraSample&)> on_measurement);
-Result<std::unique_ptr<Subscription>> subscribe_imu(
-    Vehicle& vehicle, std::string_view sensor,
-    std::function<void(const uav::ImuSample&)> on_measurement);
-Result<std::unique_ptr<Subscription>> subscribe_range(
-    Vehicle& vehicle, std::string_view sensor,
-    std::function<void(const uav::RangeSample&)> on_measurement);
+Result<std::unique_ptr<Subscription>> subscribe_any(
+    Vehicle& vehicle, std::string_view sensor, uav::SensorKind kind,
+    std::function<void(const uav::Sample&)> on_measurement);
+/// `subscribe<uav::ImuSample>(vehicle, "imu", [](const uav::ImuSample& sample) { … })`
+template <class Sample, class Callback>
+Result<std::unique_ptr<Subscription>> subscribe(Vehicle& vehicle, std::string_view sensor,
+                                                Callback on_measurement) {
+  return subscribe_any(vehicle, sensor, uav::kind_of<Sample>(),
+                       [on_measurement = std::move(on_measurement)](const uav::Sample& sample) {
+                         on_measurement(std::get<Sample>(sample));
+                       });
+}
 /// @}
 
 }  // namespace tether::client

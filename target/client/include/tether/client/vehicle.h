@@ -48,10 +48,17 @@ class Vehicle {
   /// Whether each thread waits for its own reply only, as in programs that tether-exec started.
   virtual bool is_concurrent() const { return false; }
 
-  virtual Result<uav::CameraSample> read_camera(std::string_view sensor,
-                                                Read read = Read::kNext) = 0;
-  virtual Result<uav::ImuSample> read_imu(std::string_view sensor, Read read = Read::kNext) = 0;
-  virtual Result<uav::RangeSample> read_range(std::string_view sensor, Read read = Read::kNext) = 0;
+  /// A measurement of a sensor: a sample of that kind. Fails with kInvalid if the UAV has no sensor
+  /// of that kind and name.
+  virtual Result<uav::Sample> read_any(std::string_view sensor, uav::SensorKind kind,
+                                       Read read) = 0;
+  /// The same by the type of its samples: `read<uav::ImuSample>("imu")`.
+  template <class Sample>
+  Result<Sample> read(std::string_view sensor, Read how = Read::kNext) {
+    auto sample = read_any(sensor, uav::kind_of<Sample>(), how);
+    if (!sample) return sample.failure();
+    return std::get<Sample>(std::move(*sample));
+  }
 
   /// The battery now; a program can tell from its catalogue whether it has one. Fails with kInvalid
   /// if not.

@@ -61,9 +61,8 @@ class PlanarVehicle : public client::Vehicle {
 
   ExecTime now() const override;
   const uav::Catalogue& catalogue() const override { return catalogue_; }
-  Result<uav::CameraSample> read_camera(std::string_view sensor, client::Read read) override;
-  Result<uav::ImuSample> read_imu(std::string_view sensor, client::Read read) override;
-  Result<uav::RangeSample> read_range(std::string_view sensor, client::Read read) override;
+  Result<uav::Sample> read_any(std::string_view sensor, uav::SensorKind kind,
+                               client::Read read) override;
   /// Full at the start, and empty after `Options::endurance`.
   Result<uav::BatterySample> read_battery() override;
   Status command_velocity(const uav::VelocityCommand& command) override;
@@ -90,6 +89,12 @@ class PlanarVehicle : public client::Vehicle {
   /// @}
 
  private:
+  /// @name Of a sensor of that kind
+  /// @{
+  uav::CameraSample image();
+  uav::ImuSample motion(client::Read read);
+  uav::RangeSample range();
+  /// @}
   struct State {
     uav::Vec3 p_W, v_W, a_W;
     double yaw_rad = 0.0;
