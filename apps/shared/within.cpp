@@ -1,5 +1,7 @@
 #include "shared/within.h"
 
+#include "shared/option.h"
+
 #include <cmath>
 #include <sstream>
 
@@ -16,7 +18,6 @@ std::string shown(double value) {
 }
 
 CLI::Validator within(double least, double most) {
-  constexpr double kLargestWhole = 9007199254740992.0;
   const std::string range = shown(least) + " to " + (most == kLargestWhole ? "2^53" : shown(most));
   return CLI::Validator(
       [=](const std::string& text) -> std::string {

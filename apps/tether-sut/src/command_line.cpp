@@ -1,5 +1,6 @@
 #include "command_line.h"
 
+#include "shared/command.h"
 #include "shared/complaint.h"
 #include "shared/completion.h"
 #include "shared/help.h"
@@ -8,6 +9,7 @@
 #include <algorithm>
 #include <map>
 #include <sstream>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -25,14 +27,16 @@
 
 // The options of all commands; of this program, only this source includes CLI11. The options of
 // tasks are made from rig::task_fields, the others are defined here. After CLI11 has parsed the
-// arguments, understand() checks which options can be combined. docs/man/tether-sut.1 describes
-// the same options.
+// arguments, understand() checks which options can be combined.
 
 namespace tether::sut {
 namespace {
 
-using app::shown;
-using app::within;
+using app::checked;
+using app::Option;
+using app::Options;
+using app::range;
+using app::required;
 
 constexpr const char* kDescription =
     "Runs the tasks of the paper on the target: in simulation, connected to Tether's coordinator, "
@@ -88,234 +92,167 @@ std::string footer_of(std::string_view command) {
 
 // Kinds of values ---------------------------------------------------------------------------------
 
-CLI::Validator odd() {
-  return CLI::Validator(
-      [](std::string& text) {
-        const bool is_odd = !text.empty() && (text.back() - '0') % 2 == 1;
-        return is_odd ? std::string() : text + " is not odd";
-      },
-      "odd");
+// Each returns what is wrong with a value; empty: nothing.
+
+std::string even_is_wrong(const std::string& text) {
+  const bool is_odd = !text.empty() && (text.back() - '0') % 2 == 1;
+  return is_odd ? "" : text + " is not odd";
 }
 
 constexpr const char* kDevices =
     "a path with a '/', a number N for /dev/videoN, a stream's URL, or iio:NAME";
 
-CLI::Validator device() {
-  return CLI::Validator(
-      [](std::string& text) {
-        return devices::is_device(text) ? std::string()
-                                        : "invalid device \"" + text + "\". Use " + kDevices;
-      },
-      "DEVICE");
+std::string no_device(const std::string& text) {
+  return devices::is_device(text) ? "" : "invalid device \"" + text + "\". Use " + kDevices;
 }
 
-CLI::Validator profile_name() {
-  return CLI::Validator(
-      [](std::string& text) {
-        return calibration::is_profile_name(text)
-                   ? std::string()
-                   : "invalid name \"" + text +
-                         "\". Use 1 to 64 letters, digits, '_', '-' and '.', not "
-                         "starting with '.'";
-      },
-      "NAME");
+std::string no_profile_name(const std::string& text) {
+  return calibration::is_profile_name(text)
+             ? ""
+             : "invalid name \"" + text +
+                   "\". Use 1 to 64 letters, digits, '_', '-' and '.', not starting with '.'";
 }
 
-CLI::Validator file_name() {
-  return CLI::Validator(
-      [](std::string& text) {
-        return text.empty() ? std::string("the name is empty") : std::string();
-      },
-      "FILE");
-}
-
-/// "12,40,80,60" in whole pixels.
-void add_pixel_box(CLI::App& app, const std::string& name, std::optional<rig::PixelBox>& box,
-                   const std::string& description) {
-  app.add_option_function<std::vector<double>>(
-         name,
-         [&box](const std::vector<double>& v) {
-           box = rig::PixelBox{v[0], v[1], v[2], v[3]};
-           if (box->width_px < 1.0 || box->height_px < 1.0)
-             throw CLI::ValidationError("--true-roi-px", "W and H must be at least 1");
-         },
-         description)
-      ->delimiter(',')
-      ->expected(4)
-      ->check(within(-1e5, 1e5))
-      ->type_name("X,Y,W,H");
+std::string no_file_name(const std::string& text) {
+  return text.empty() ? "the name is empty" : "";
 }
 
 // Tasks -------------------------------------------------------------------------------------------
 
-/// Defines the option of a task's field.
-class OptionOf {
- public:
-  OptionOf(CLI::App& app, const rig::Field& field)
-      : app_(app), name_("--" + std::string(field.name)), description_(field.description) {
-    std::replace(name_.begin(), name_.end(), '_', '-');
-  }
+/// Where the value of a task's field goes, and what it may be.
+struct Row {
+  Option& option;
 
   void operator()(const rig::TextField& field) const {
-    CLI::Option* option = app_.add_option(name_, *field.value, description_);
-    if (field.is_required)
-      option->required();
-    else
-      option->capture_default_str();
+    option.destination = field.value;
+    option.words += " NAME";
+    option.allowed.is_required = field.is_required;
   }
   void operator()(const rig::NumberField& field) const {
-    app_.add_option_function<double>(name_, field.set, description_)
-        ->check(within(field.least, field.most))
-        ->default_str(shown(field.usual));
+    option.destination = field.set;
+    option.allowed = {.least = field.least, .most = field.most, .usual = app::shown(field.usual)};
   }
   void operator()(const rig::IntegerField& field) const {
-    CLI::Option* option = app_.add_option(name_, *field.value, description_)
-                              ->check(within(field.least, field.most))
-                              ->capture_default_str();
-    if (field.is_odd) option->check(odd());
+    option.destination = field.value;
+    option.allowed = app::range(field.least, field.most);
+    if (field.is_odd) option.allowed.check = even_is_wrong;
   }
   void operator()(const rig::BooleanField& field) const {
-    app_.add_option(name_, *field.value, description_)->capture_default_str();
+    option.destination = field.value;
+    option.words += " true|false";
   }
   void operator()(const rig::ChoiceField& field) const {
     const std::vector<std::string> words(field.words.begin(), field.words.end());
-    app_.add_option_function<std::string>(
-            name_,
-            [set = field.set, words](const std::string& word) {
-              set(static_cast<std::size_t>(std::find(words.begin(), words.end(), word) -
-                                           words.begin()));
-            },
-            description_)
-        ->check(CLI::IsMember(words))
-        ->type_name("NAME");
+    option.destination = [set = field.set, words](const std::string& word) {
+      set(static_cast<std::size_t>(std::ranges::find(words, word) - words.begin()));
+    };
+    option.allowed.words = words;
   }
-
- private:
-  CLI::App& app_;
-  std::string name_;
-  std::string description_;
 };
 
-void add_task_options(CLI::App& app, rig::TaskSpec& spec) {
-  for (const rig::Field& field : fields_of(spec)) std::visit(OptionOf(app, field), field.value);
+Options task_options(rig::TaskSpec& spec) {
+  Options options;
+  for (const rig::Field& field : fields_of(spec)) {
+    Option option{"--" + std::string(field.name), std::string(field.description), {}, {}};
+    std::ranges::replace(option.words, '_', '-');
+    std::visit(Row{option}, field.value);
+    options.push_back(std::move(option));
+  }
+  return options;
 }
 
 // Everything else ---------------------------------------------------------------------------------
 
-void add_characterize_options(CLI::App& app, calibration::CharacterizeOptions& options) {
+Options characterize_options(calibration::CharacterizeOptions& options) {
   static const std::map<std::string, calibration::Timing> kTimings = {
       {"auto", calibration::Timing::kAuto},
       {"on_demand", calibration::Timing::kOnDemand},
       {"periodic", calibration::Timing::kPeriodic}};
-  app.add_option("--sensors", options.sensors,
-                 "Names of sensors, separated by commas [all sensors]")
-      ->delimiter(',')
-      ->type_name("NAME,NAME");
-  app.add_option("--acquisitions", options.acquisitions, "Acquisitions per experiment")
-      ->check(within(1, calibration::kMostAcquisitions))
-      ->capture_default_str();
-  app.add_option("--experiments", options.experiments, "Experiments per sensor; ten in the paper")
-      ->check(within(1, calibration::kMostAcquisitions))
-      ->capture_default_str();
-  app.add_option(
-         "--timing", options.timing,
-         "Timing model in the profile: on_demand (delay from request to data), periodic (period "
-         "and "
-         "delay of the sensor), or auto (periodic if the sensor has a rate and the model fits, "
-         "otherwise on_demand) [auto]")
-      ->transform(CLI::Transformer(kTimings))
-      ->type_name("NAME");
-  app.add_option("--name", options.name, "Name of the profile [name of this machine]")
-      ->check(profile_name())
-      ->type_name("NAME");
-  app.add_option("--out", options.out, "File for the profile (TOML)")
-      ->check(file_name())
-      ->type_name("FILE");
-  app.add_option_function<double>(
-         "--time-limit-s",
-         [&options](double value) { options.time_limit = duration_from_seconds(value); },
-         "Time limit per sensor")
-      ->check(within(0.001, 1e6))
-      ->default_str(shown(to_seconds(options.time_limit)));
+  return {{"--sensors NAME,NAME",
+           "Names of sensors, separated by commas [all sensors]",
+           &options.sensors,
+           {.has_commas = true}},
+          {"--acquisitions", "Acquisitions per experiment", &options.acquisitions,
+           range(1, calibration::kMostAcquisitions)},
+          {"--experiments", "Experiments per sensor; ten in the paper", &options.experiments,
+           range(1, calibration::kMostAcquisitions)},
+          {"--timing",
+           "Timing model in the profile: on_demand (delay from request to data), periodic (period "
+           "and delay of the sensor), or auto (periodic if the sensor has a rate and the model "
+           "fits, otherwise on_demand)",
+           [&options](const std::string& word) { options.timing = kTimings.at(word); },
+           {.words = {"auto", "on_demand", "periodic"}, .usual = "auto"}},
+          {"--name NAME", "Name of the profile [the name of this machine]", &options.name,
+           checked(no_profile_name)},
+          {"--out FILE", "File for the profile (TOML)", &options.out, checked(no_file_name)},
+          {"--time-limit-s",
+           "Time limit per sensor",
+           [&options](double value) { options.time_limit = duration_from_seconds(value); },
+           {.least = 0.001, .most = 1e6, .usual = app::shown(to_seconds(options.time_limit))}}};
 }
 
-void add_calibrate_options(CLI::App& app, calibration::CalibrateOptions& options) {
-  const auto add_file = [&app](const char* name, std::string& file, const char* description) {
-    app.add_option(name, file, description)->check(file_name())->type_name("FILE");
-  };
-  app.add_option("--rounds", options.rounds, "Measured rounds, after three warm-up rounds")
-      ->check(within(calibration::kLeastRounds, 100'000))
-      ->capture_default_str();
-  app.add_option("--cpu", options.cpu_index,
-                 "CPU core to measure on, from 0 [the last one that is allowed]")
-      ->check(within(0, 100'000))
-      ->type_name("N");
-  add_file("--out", options.out, "File for the measurements (TOML)");
-  add_file("--against", options.against,
-           "Measurements of another machine; reports how many times longer it takes");
-  add_file("--measured", options.measured,
-           "Earlier measurements of this machine, to use instead of measuring");
-  add_file(
-      "--write-target", options.target,
-      "With --against: file for a virtual target on this machine that represents the other one "
-      "(TOML)");
-  app.add_flag(
-      "--counted", options.counted,
-      "With --against: instead of measuring here, count the work under an emulator and fit "
-      "its costs; the target is the same on every machine");
-  app.add_option("--cpu-model", options.cpu_model,
-                 "With --counted: CPU model for the emulator [Nehalem or cortex-a72]")
-      ->type_name("MODEL");
-  add_file("--program", options.program,
-           "With --counted: tether-sut for the other machine [this program]");
-  app.add_option("--sysroot", options.sysroot,
-                 "With --counted: folder of the libraries for that program [those of this machine]")
-      ->type_name("FOLDER");
-  app.add_option("--name", options.name, "Name of the target [name of the other machine]")
-      ->check(profile_name())
-      ->type_name("NAME");
+Options calibrate_options(calibration::CalibrateOptions& options) {
+  return {
+      {"--rounds", "Measured rounds, after three warm-up rounds", &options.rounds,
+       range(calibration::kLeastRounds, 100'000)},
+      {"--cpu N", "CPU core to measure on, from 0 [the last one that is allowed]",
+       &options.cpu_index, range(0, 100'000)},
+      {"--out FILE", "File for the measurements (TOML)", &options.out, checked(no_file_name)},
+      {"--against FILE", "Measurements of another machine; reports how many times longer it takes",
+       &options.against, checked(no_file_name)},
+      {"--measured FILE", "Earlier measurements of this machine, to use instead of measuring",
+       &options.measured, checked(no_file_name)},
+      {"--write-target FILE",
+       "With --against: file for a virtual target on this machine that represents the "
+       "other one (TOML), for --target of tether",
+       &options.target, checked(no_file_name)},
+      {"--counted",
+       "With --against: instead of measuring here, count the work under an emulator and fit its "
+       "costs; the target is the same on every machine",
+       &options.counted},
+      {"--cpu-model MODEL", "With --counted: CPU model for the emulator [Nehalem or cortex-a72]",
+       &options.cpu_model},
+      {"--program FILE", "With --counted: tether-sut for the other machine [this program]",
+       &options.program, checked(no_file_name)},
+      {"--sysroot FOLDER",
+       "With --counted: folder of the libraries for that program [those of this machine]",
+       &options.sysroot},
+      {"--name NAME", "Name of the target [the name of the other machine]", &options.name,
+       checked(no_profile_name)}};
 }
 
-void add_real_row_options(CLI::App& app, rig::RealRowOptions& options) {
-  add_pixel_box(
-      app, "--true-roi-px", options.true_roi,
-      "With real devices: the true box of the anchor in the image, in whole pixels from the "
-      "top left; adds the angle error to the result");
-  app.add_option("--keep-image", options.keep_image,
-                 "With real devices: file for the image of the last estimate, for annotation (PNG)")
-      ->check(file_name())
-      ->type_name("FILE");
+Options real_row_options(rig::RealRowOptions& options) {
+  return {{"--true-roi-px X,Y,W,H",
+           "With real devices: the true box of the anchor in the image, in whole pixels "
+           "from the top left; adds the angle error to the result",
+           [&options](const std::vector<double>& v) {
+             if (v[2] < 1.0 || v[3] < 1.0)
+               throw std::invalid_argument("W and H must be at least 1");
+             options.true_roi = rig::PixelBox{v[0], v[1], v[2], v[3]};
+           },
+           {.least = -1e5, .most = 1e5, .has_commas = true, .count = 4}},
+          {"--keep-image FILE",
+           "With real devices: file for the image of the last estimate, for annotation (PNG)",
+           &options.keep_image, checked(no_file_name)}};
 }
 
 bool is_given(const rig::RealRowOptions& options) {
   return options.true_roi || !options.keep_image.empty();
 }
 
-void add_unless_there(CLI::App& app, const std::string& name, std::string& value,
-                      const std::string& description) {
-  if (app.get_option_no_throw(name) == nullptr)
-    app.add_option(name, value, description)->check(device())->type_name("");
-}
-
-/// Adds --rig, and --camera, --imu and --range unless the task has them. Those of a task accept
-/// both the name of a sensor and a device.
-void add_device_options(CLI::App& app, rig::DeviceArguments& arguments) {
-  app.add_option("--rig", arguments.rig,
-                 "Use real devices instead of a coordinator: file that describes them (TOML)")
-      ->type_name("FILE");
-  add_unless_there(app, "--camera", arguments.camera, std::string("Real camera: ") + kDevices);
-  add_unless_there(app, "--imu", arguments.imu,
-                   "Real IMU: a folder like that of iio:deviceN, or iio:NAME");
-  add_unless_there(app, "--range", arguments.range,
-                   "Real rangefinder: a folder like that of iio:deviceN, or iio:NAME");
-}
-
-void add_link_options(CLI::App& app, CommandLine& line) {
-  app.add_option("--address", line.address,
-                 "Address of the coordinator, host:port (overrides TETHER_ADDRESS)");
-  app.add_option("--uav", line.uav, "UAV to control (overrides TETHER_UAV)");
-  app.add_option("--clock", line.clock,
-                 "Clock of the SUT: wall, cpu or cpu*FACTOR (overrides TETHER_CLOCK)");
+/// Of a device, unless a task has the option for a sensor, which then accepts both.
+Options devices_beside(const Options& own, rig::DeviceArguments& arguments) {
+  Options options = {
+      {"--camera DEVICE", std::string("Real camera: ") + kDevices, &arguments.camera,
+       checked(no_device)},
+      {"--imu DEVICE", "Real IMU: a folder like that of iio:deviceN, or iio:NAME", &arguments.imu,
+       checked(no_device)},
+      {"--range DEVICE", "Real rangefinder: a folder like that of iio:deviceN, or iio:NAME",
+       &arguments.range, checked(no_device)}};
+  std::erase_if(options, [&own](const Option& option) {
+    return std::ranges::count(own, key_of(option), app::key_of) > 0;
+  });
+  return options;
 }
 
 /// The results of parsing.
@@ -329,22 +266,32 @@ struct Words {
   std::vector<std::string> anchors;  ///< of the world; empty: not known
 };
 
-/// `define` adds the subcommand's own options.
-template <class Define>
-CLI::App* add_subcommand(CLI::App& app, std::string_view name, std::string_view description,
-                         Words& words, Define define) {
-  CLI::App* command = app.add_subcommand(std::string(name), std::string(description));
-  define(*command);
-  command->add_flag("--check", words.line.only_checks,
-                    "Only read these options and their files: exit code 2 if something is wrong");
-  command
-      ->add_option("--anchors", words.anchors,
-                   "With --check: the anchors of the world; a task that needs another one is wrong")
-      ->type_name("NAME");
-  add_link_options(*command, words.line);
-  add_device_options(*command, words.devices);
-  command->footer(footer_of(name));
-  return command;
+/// Of a command that reads sensors.
+Options link_options(Words& words) {
+  return {
+      {"--check", "Only read these options and their files: exit code 2 if something is wrong",
+       &words.line.only_checks},
+      {"--anchors NAME",
+       "With --check: the anchors of the world; a task that needs another one is wrong",
+       &words.anchors},
+      {"--address ADDRESS", "Address of the coordinator, host:port (overrides TETHER_ADDRESS)",
+       &words.line.address},
+      {"--uav NAME", "UAV to control (overrides TETHER_UAV)", &words.line.uav},
+      {"--clock CLOCK",
+       "Clock of the SUT: wall, cpu or cpu*FACTOR (overrides TETHER_CLOCK). A run rejects a clock "
+       "other than that of its condition",
+       &words.line.clock},
+      {"--rig FILE", "Use real devices instead of a coordinator: file that describes them (TOML)",
+       &words.devices.rig}};
+}
+
+/// With the options of a command that reads sensors.
+void add_sensing_command(CLI::App& program, std::string_view name, std::string_view help,
+                         const Options& own, Words& words) {
+  app::add_command(
+      program, std::string(name), std::string(help),
+      app::concatenated({own, link_options(words), devices_beside(own, words.devices)}),
+      footer_of(name));
 }
 
 Refusal refusal(const std::string& what) {
@@ -361,34 +308,31 @@ Refusal refusal(const CLI::App& program, const CLI::ParseError& error) {
   return refusal(app::complaint(program, error));
 }
 
-void define_tasks(CLI::App& app, Words& words) {
+void define_tasks(CLI::App& program, Words& words) {
   for (const rig::TaskKind& kind : rig::task_kinds())
     words.tasks.emplace_back().options = kind.defaults;
   for (std::size_t i = 0; i < words.tasks.size(); ++i) {
     rig::TaskSpec& spec = words.tasks[i];
+    Options options = task_options(spec);
+    if (std::holds_alternative<tasks::RelativePositionOptions>(spec.options))
+      options = app::concatenated({options, real_row_options(words.line.real_row)});
     const rig::TaskKind& kind = rig::task_kinds()[i];
-    add_subcommand(app, kind.name, kind.description, words, [&](CLI::App& command) {
-      add_task_options(command, spec);
-      if (std::holds_alternative<tasks::RelativePositionOptions>(spec.options))
-        add_real_row_options(command, words.line.real_row);
-    });
+    add_sensing_command(program, kind.name, kind.description, options, words);
   }
 }
 
-void define_subcommands(CLI::App& app, Words& words) {
-  define_tasks(app, words);
-  add_subcommand(
-      app, "mission", "Run the tasks of a file in sequence", words, [&](CLI::App& command) {
-        command.add_option("file,--file,--mission", words.mission_file, "Mission file (TOML)")
-            ->required();
-      });
-  add_subcommand(app, "characterize", "Measure the timing of each sensor and write a profile",
-                 words,
-                 [&](CLI::App& command) { add_characterize_options(command, words.characterize); });
-  CLI::App* calibrate = app.add_subcommand(
-      "calibrate", "Measure how fast this machine is; with --against, relative to another machine");
-  add_calibrate_options(*calibrate, words.calibrate);
-  calibrate->footer(footer_of("calibrate"));
+void define_subcommands(CLI::App& program, Words& words) {
+  define_tasks(program, words);
+  add_sensing_command(
+      program, "mission", "Run the tasks of a file in sequence",
+      {{"file,--file,--mission FILE", "Mission file (TOML)", &words.mission_file, required()}},
+      words);
+  add_sensing_command(program, "characterize",
+                      "Measure the timing of each sensor and write a profile",
+                      characterize_options(words.characterize), words);
+  app::add_command(program, "calibrate",
+                   "Measure how fast this machine is; with --against, relative to another machine",
+                   calibrate_options(words.calibrate), footer_of("calibrate"));
 }
 
 /// Takes the selected command, and checks its options.
@@ -420,9 +364,9 @@ Status take_command(const CLI::App& app, Words& words) {
 /// Checks options that need either a coordinator or real devices.
 Status check_link(const CommandLine& line) {
   if (line.rig && (line.address || line.uav || line.clock)) {
-    return Failure{Failure::Kind::kInvalid,
-                   "--address, --uav and --clock need a coordinator; they cannot be used with real "
-                   "devices"};
+    return Failure{
+        Failure::Kind::kInvalid,
+        "--address, --uav and --clock need a coordinator; they cannot be used with real devices"};
   }
   if (!line.rig && is_given(line.real_row)) {
     return Failure{Failure::Kind::kInvalid,

@@ -1,6 +1,7 @@
 #include "back_ends.h"
 #include "commands/commands.h"
 #include "commands/trial_service.h"
+#include "options/common_options.h"
 #include "options/engine_option.h"
 #include "options/junit_option.h"
 #include "options/refuse_option.h"
@@ -41,6 +42,19 @@ namespace tether::app {
 
 namespace {
 
+struct CampaignOptions {
+  std::filesystem::path campaign;
+  std::vector<std::filesystem::path> collect;  ///< folders of a campaign
+  std::filesystem::path listed;                ///< a list of an engine's shards
+  std::filesystem::path out;
+  std::string shard;  ///< "K/N"
+  std::string simulator;
+  EngineOptions engine;
+  ReadingOptions reading;
+  bool resume = false;
+  std::filesystem::path junit;
+};
+
 /// The campaign, with the simulator of the options in all conditions if one is given.
 scenario::Campaign load(const CampaignOptions& options) {
   const auto shipped = scenario::ShippedFiles::of_program(os::own_file());
@@ -70,6 +84,13 @@ void require_one_task(const CampaignOptions& options) {
     refuse_option("--shard", "is for a campaign.");
 }
 
+/// What is brought together, in the first one.
+std::vector<std::filesystem::path> folders_of(const CampaignOptions& options) {
+  std::vector<std::filesystem::path> folders = options.collect;
+  if (!options.out.empty()) folders.insert(folders.begin(), options.out);
+  return folders;
+}
+
 campaign::CampaignOutcome with_bar(
     const std::function<campaign::CampaignOutcome(const campaign::ProgressCallback&)>& fly) {
   ProgressBar bar;
@@ -92,7 +113,8 @@ int fly_listed(const CampaignOptions& options, const std::stop_token& stop) {
       std::filesystem::absolute(options.listed).parent_path().parent_path().parent_path();
   runner::TrialServers servers;
   const auto outcome = with_bar([&](const campaign::ProgressCallback& progress) {
-    return runner::fly_shard(list, campaign, {}, options.jobs.value_or(1), servers, stop, progress);
+    return runner::fly_shard(list, campaign, {}, options.engine.jobs.value_or(1), servers, stop,
+                             progress);
   });
   return outcome.interrupted || outcome.failed > 0 ? exit_code(ErrorCode::kSetup) : 0;
 }
@@ -146,7 +168,7 @@ campaign::CampaignOutcome fly(const Flying& f, const std::optional<shards::Engin
 int run_trials(const CampaignOptions& options, const std::stop_token& stop) {
   const scenario::Campaign campaign = load(options);
   const auto engine = engine_of(options.engine);
-  const int jobs = jobs_of(options.jobs, engine);
+  const int jobs = jobs_of(options.engine, engine);
   if (!options.shard.empty()) (void)shards::parse_shard(options.shard);
   require_parallel_allowed(campaign, engine, jobs);
   const std::filesystem::path out =
@@ -188,16 +210,50 @@ int run_trials(const CampaignOptions& options, const std::stop_token& stop) {
   return outcome.failed > 0 ? exit_code(ErrorCode::kSetup) : 0;
 }
 
-}  // namespace
-
+/// Runs many trials: scenarios x conditions x seeds.
 int run_campaign(const CampaignOptions& options, const std::stop_token& stop) {
   require_one_task(options);
   if (!options.listed.empty()) return fly_listed(options, stop);
   if (!options.collect.empty())
     return with_junit(options.junit, options.collect.front().string(),
-                      [&] { return collect_campaign(options); });
+                      [&] { return collect_campaign(folders_of(options), options.junit); });
   return with_junit(options.junit, options.campaign.string(),
                     [&] { return run_trials(options, stop); });
+}
+
+Options campaign_rows(CampaignOptions& o) {
+  return concatenated(
+      {{{"campaign", "Name of a shipped campaign, or a file (TOML)", &o.campaign},
+        {"--out FOLDER", "Folder for the trials [out/campaigns/CAMPAIGN]", &o.out},
+        {"--shard K/N",
+         "Fly only part K of N: each N-th trial, from the K-th on. Other parts can be flown at the "
+         "same time, in the same or another folder. To continue, give the same option again",
+         &o.shard}},
+       engine_options(o.engine),
+       {{"--collect FOLDER",
+         "Bring the results of these folders of a campaign together in the first one, or in that "
+         "of --out, and report what is missing (exit code 3), or left out because it is of another "
+         "campaign, other files or versions (2)",
+         &o.collect},
+        {"--listed FILE", "Fly the trials of this list, which an engine's script names", &o.listed},
+        simulator_option(o.simulator),
+        junit_option(o.junit)},
+       reading_options(o.reading),
+       {resume_option(o.resume)}});
+}
+
+}  // namespace
+
+Command campaign_command() {
+  return make_command("campaign", "Run the trials of a campaign: scenarios x conditions x seeds",
+                      campaign_rows, R"(Examples:
+  tether campaign face_anchor --out out/campaign
+  tether campaign face_anchor --out out/campaign --resume
+  tether campaign face_anchor --out /shared/campaign --engine slurm --engine-option "options=--time=2:00:00"
+  tether campaign face_anchor --out part3 --shard 3/8
+  tether campaign --collect part1 part2 part3 --out all
+  tether campaign face_anchor --simulator gazebo --out out/campaign_gazebo)",
+                      run_campaign);
 }
 
 }  // namespace tether::app

@@ -36,16 +36,14 @@ void say_missing(const shards::Collected& collected, const std::filesystem::path
 
 }  // namespace
 
-int collect_campaign(const CampaignOptions& options) {
-  std::vector<std::filesystem::path> folders = options.collect;
-  if (!options.out.empty()) folders.insert(folders.begin(), options.out);
-  const std::filesystem::path out = folders.front();
+int collect_campaign(const std::vector<std::filesystem::path>& folders,
+                     const std::filesystem::path& junit) {
+  const std::filesystem::path& out = folders.front();
   const shards::Collected collected = shards::collect(folders);
   complain_of_each("left out", collected.left_out);
   complain_of_each("flown twice", collected.differing);
   const campaign::CampaignResults results = campaign::read_campaign_results(out);
-  if (!options.junit.empty())
-    os::write_file_atomically(options.junit, report::to_junit(results, out));
+  if (!junit.empty()) os::write_file_atomically(junit, report::to_junit(results, out));
   print_campaign_summary(results, out);
   if (!collected.missing.empty()) say_missing(collected, out);
   if (!collected.left_out.empty()) return exit_code(ErrorCode::kBadFile);

@@ -13,12 +13,13 @@
 namespace tether::app {
 namespace {
 
+struct ListOptions {};
+
 using scenario::ShippedFile;
 using scenario::ShippedFiles;
 using scenario::ShippedKind;
 
-}  // namespace
-
+/// Prints the names and descriptions of the files that Tether ships.
 int list_shipped(const ListOptions&, const std::stop_token&) {
   const auto shipped = ShippedFiles::of_program(os::own_file());
   const char* gap = "";
@@ -40,6 +41,21 @@ int list_shipped(const ListOptions&, const std::stop_token&) {
       "\"room\". Copy a file to change it, and give the copy another name.\n",
       shipped.folder().string()));
   return 0;
+}
+
+Options list_rows(ListOptions&) {
+  return {};
+}
+
+}  // namespace
+
+Command list_command() {
+  return make_command(
+      "list", "List the scenarios, campaigns, worlds, profiles and targets that Tether ships",
+      list_rows,
+      "You can pass these names to `tether run`, `tether campaign`, --profile and --target instead "
+      "of a file.",
+      list_shipped);
 }
 
 }  // namespace tether::app

@@ -1,4 +1,5 @@
 #include "commands/commands.h"
+#include "commands/size_options.h"
 #include "options/output_file.h"
 #include "reading/file_kind.h"
 #include "terminal/print.h"
@@ -29,6 +30,12 @@
 namespace tether::app {
 
 namespace {
+
+struct ReportOptions {
+  std::filesystem::path folder;
+  std::string format = "text";
+  std::filesystem::path out;
+};
 
 constexpr const char* kHtml = "html";
 
@@ -122,9 +129,8 @@ OutputFormat output_format(const std::string& format) {
   return format.ends_with("csv") ? OutputFormat::kCsv : OutputFormat::kText;
 }
 
-}  // namespace
-
-int report(const ReportOptions& options, const std::stop_token&) {
+/// Prints or writes the results of a campaign or a run.
+int print_report(const ReportOptions& options, const std::stop_token&) {
   require_output_file("--out", options.out, output_format(options.format));
   const std::string text = rendered(options);
   std::filesystem::path out = options.out;
@@ -136,6 +142,28 @@ int report(const ReportOptions& options, const std::stop_token&) {
     fmt::print("{}\n", out.string());
   }
   return 0;
+}
+
+Options report_rows(ReportOptions& o) {
+  return {{"folder", "Folder of a campaign or a run", &o.folder, required()},
+          {"--format",
+           "text, markdown, csv (one row per trial and metric), summary-csv (one row per condition "
+           "and metric), or html (one self-contained page; needs gnuplot)",
+           &o.format, one_of({"text", "markdown", "csv", "summary-csv", kHtml})},
+          {"--out FILE", "File to write [standard output; for html, report.html in the folder]",
+           &o.out}};
+}
+
+}  // namespace
+
+Command report_command() {
+  return make_command("report", "Report the results of a campaign or a run", report_rows,
+                      R"(Examples:
+  tether report out/campaign
+  tether report out/campaign --format html
+  tether report out/one --format html --out one.html
+  tether report out/campaign --format csv --out trials.csv)",
+                      print_report);
 }
 
 void print_campaign_summary(const campaign::CampaignResults& results,
@@ -151,12 +179,10 @@ void print_campaign_summary(const campaign::CampaignResults& results,
   for (const auto& scenario : results.scenarios)
     if (scenario.swept_from.empty()) show(report::paper_form_table(scenario));
   print(
-      fmt::format("Records and results: {0}\n"
-                  "Next steps:\n"
-                  "  tether report {0} --format html   one page with tables and plots\n"
-                  "  tether report {0}                 only the tables\n"
-                  "  tether audit {0}/SCENARIO/CONDITION/seed-NNNN/record.mcap\n"
-                  "  open a record.mcap in Foxglove (log time is simulated time)\n",
+      fmt::format("Records and results: {0}\nNext steps:\n  tether report {0} --format html   one "
+                  "page with tables and plots\n  tether report {0}                 only the "
+                  "tables\n  tether audit {0}/SCENARIO/CONDITION/seed-NNNN/record.mcap\n  open a "
+                  "record.mcap in Foxglove (log time is simulated time)\n",
                   folder.string()));
 }
 

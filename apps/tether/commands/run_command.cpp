@@ -1,5 +1,6 @@
 #include "back_ends.h"
 #include "commands/commands.h"
+#include "options/common_options.h"
 #include "options/junit_option.h"
 #include "reading/file_kind.h"
 #include "reading/world_options.h"
@@ -31,6 +32,18 @@
 namespace tether::app {
 
 namespace {
+
+struct RunOptions {
+  runner::TrialRequest request;  ///< but for what the following members name
+  std::filesystem::path scenario;
+  std::string target;
+  std::filesystem::path profile;
+  std::vector<std::string> settings;  ///< "KEY=VALUE"
+  ReadingOptions reading;
+  bool json = false;
+  bool quiet = false;
+  std::filesystem::path junit;
+};
 
 /// The file that the user means, which is not of another kind.
 std::filesystem::path find_file(const scenario::ShippedFiles& shipped, scenario::ShippedKind kind,
@@ -95,11 +108,80 @@ int run_and_print(const RunOptions& options, const std::stop_token& stop) {
   return campaign::exit_code(result);
 }
 
-}  // namespace
-
 int run_one(const RunOptions& options, const std::stop_token& stop) {
   return with_junit(options.junit, options.scenario.string(),
                     [&] { return run_and_print(options, stop); });
+}
+
+Options run_rows(RunOptions& o) {
+  return concatenated(
+      {{scenario_argument(o.scenario),
+        condition_option(o.request.condition),
+        {"--profile PROFILE",
+         "Sensor profile that overrides the scenario's settings: name of a shipped profile, or a "
+         "file (TOML)",
+         &o.profile},
+        {"--seed", "Seed of noise, delays and start poses", &o.request.seed,
+         range(0, kLargestWhole)},
+        {"--out FOLDER",
+         "Folder for result.json, record.mcap and the SUT's log. A folder with an earlier run "
+         "needs --force [out/SCENARIO/CONDITION/seed-N, where the earlier run is replaced]",
+         &o.request.folder},
+        {"--force",
+         "Replace the earlier run in the folder of --out: remove all of its files, with its "
+         "reports, plots and frames",
+         &o.request.replaces_earlier},
+        {"--real-time-factor FACTOR", "Maximum speed of the simulation relative to the wall clock",
+         &o.request.real_time_factor, range(1e-3, 1e4)},
+        {"--cpu-time-scale FACTOR",
+         "With the clock \"cpu\": count CPU time so many times, because this machine is that much "
+         "faster than the one of other runs",
+         &o.request.cpu_time_scale, range(1e-3, 1e3)},
+        {"--slowdown FACTOR", "Make the SUT's computer so many times slower than the condition's",
+         &o.request.slowdown, range(1e-3, 1e4)},
+        {"--unknown-stages ACTION",
+         "With the clock \"replayed\": time of stages that were not recorded, instead of the "
+         "condition's unknown_stages: refused (the run ends), counted or zero",
+         &o.request.unknown_stages},
+        {"--set KEY=VALUE",
+         "Set a value of the scenario, given by its key's path: time_limit_s=30, cpu_factor=4 (of "
+         "each [[condition]] that has it), \"uav.position_m=[1, 0, 1]\", "
+         "sut.parameters.yaw_rate_deg_s=40, uavs=2 (the first two); can be repeated",
+         &o.settings,
+         {.is_one_each = true}},
+        {"--listen ADDRESS",
+         "Address for the SUT, host:port; port 0 selects a free port [a free port of 127.0.0.1; "
+         "for a board, of the address at which it sees this machine]",
+         &o.request.listen},
+        {"--target TARGET",
+         "Where the SUT runs, instead of the condition's target: name of a shipped target, a file "
+         "(TOML), or a board, ssh://[user@]board[:port]; with \"wait\", print the command that "
+         "starts the SUT and wait for it to connect",
+         &o.target},
+        simulator_option(o.request.simulator),
+        {"--tunnel",
+         "Tunnel the SUT's connection through SSH, for a board that cannot reach this machine; the "
+         "board must then decrypt every image",
+         &o.request.uses_tunnel},
+        {"--images", "Record the camera images that the SUT reads", &o.request.record_images},
+        {"--json", "Print result.json instead of a summary", &o.json},
+        junit_option(o.junit)},
+       reading_options(o.reading),
+       {{"--quiet", "Print only errors", &o.quiet}}});
+}
+
+}  // namespace
+
+Command run_command() {
+  return make_command("run", "Run one trial of a scenario", run_rows, R"(Examples:
+  tether run face_anchor
+  tether run face_anchor --condition "target, no sync" --seed 7
+  tether run face_anchor --target six_times_slower
+  tether run face_anchor --target ssh://pi@board.local
+  tether run face_anchor --profile ideal
+  tether run face_anchor --simulator gazebo
+  tether run face_anchor --images --out out/one)",
+                      run_one);
 }
 
 }  // namespace tether::app

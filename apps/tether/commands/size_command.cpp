@@ -165,14 +165,68 @@ int find_size(const SizeOptions& options, const std::stop_token& stop) {
   return code_of(report);
 }
 
-}  // namespace
-
 int size(const SizeOptions& options, const std::stop_token& stop) {
   return with_junit(options.junit, options.scenario.string(), [&] {
     require_share("--success", options.success);
     require_share("--confidence", options.confidence);
     return options.axis == "uavs" ? find_uavs(options, stop) : find_size(options, stop);
   });
+}
+
+Options size_rows(SizeOptions& o) {
+  return concatenated(
+      {{scenario_argument(o.scenario),
+        {"--axis",
+         "What to vary: how slow the computer may be, or how many UAVs it carries. With uavs, "
+         "--target, --interval and --unsynchronised are rejected",
+         &o.axis, one_of({"slowdown", "uavs"})},
+        condition_option(o.condition),
+        {"--target TARGET",
+         "Virtual target to evaluate, several times if you like: name of a shipped target, or a "
+         "file (TOML)",
+         &o.targets},
+        {"--success SHARE", "Share of flights that must reach the goal, above 0 and below 1",
+         &o.success},
+        {"--confidence SHARE", "Confidence of the answer's interval, above 0 and below 1",
+         &o.confidence},
+        {"--interval FACTOR",
+         "Stop when its upper bound is at most so many times the lower one [1.3]", &o.interval},
+        {"--between LEAST,MOST",
+         "Slowdowns [1,40], or numbers of UAVs [1, all], to fly: LEAST,MOST",
+         &o.between,
+         {.has_commas = true, .count = 2}},
+        {"--max-trials", "Maximum number of flights", &o.max_trials, range(1, 10000)},
+        {"--unsynchronised NAME",
+         "Condition without synchronisation to compare: fly it with the same slowdowns and seeds, "
+         "which doubles the flights",
+         &o.unsynchronised},
+        {"--out FOLDER",
+         "Folder for the flights, report.html, size.svg and size.json [out/size/SCENARIO; for "
+         "UAVs, SCENARIO-uavs]",
+         &o.out},
+        resume_option(o.resume),
+        {"--force", "Remove the earlier flights in the folder", &o.force}},
+       engine_options(o.engine),
+       {junit_option(o.junit), simulator_option(o.simulator)},
+       reading_options(o.reading)});
+}
+
+}  // namespace
+
+Command size_command() {
+  return make_command(
+      "size", "Find the slowest sufficient computer, or how many UAVs it carries", size_rows,
+      R"(Exit codes: 0 every --target is sufficient, or none is given, some computer of --between is, and
+the answer is as narrow as --interval asks (of UAVs: decided), 1 otherwise, 2 wrong use or a bad
+file, 3 interrupted, or flights failed.
+
+Examples:
+  tether size face_anchor --condition target
+  tether size face_anchor --target six_times_slower --jobs 2
+  tether size face_anchor --success 0.95 --interval 1.2 --max-trials 600
+  tether size face_anchor --condition target --unsynchronised "target, no sync"
+  tether size four_on_one_board --axis uavs)",
+      size);
 }
 
 }  // namespace tether::app

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "commands/commands.h"
+#include "commands/size_options.h"
 #include "terminal/status_line.h"
 
 #include <cstdint>

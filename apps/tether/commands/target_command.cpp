@@ -23,6 +23,11 @@ namespace tether::app {
 
 namespace {
 
+struct CheckOptions {
+  std::string address;
+  bool json = false;
+};
+
 using board::Finding;
 using board::Health;
 
@@ -106,8 +111,7 @@ std::string to_json(const Check& check) {
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
-}  // namespace
-
+/// Reports what would disturb a measurement on a machine.
 int check_target(const CheckOptions& options, const std::stop_token& stop) {
   const auto shipped = scenario::ShippedFiles::of_program(os::own_file());
   if (shipped.has(scenario::ShippedKind::kTarget, options.address) ||
@@ -125,6 +129,25 @@ int check_target(const CheckOptions& options, const std::stop_token& stop) {
   else
     print(to_text(check));
   return has(check, Health::kBad) ? 1 : 0;
+}
+
+Options target_check_rows(CheckOptions& o) {
+  return {{"address", "ssh://[user@]board[:port] [this machine]", &o.address},
+          {"--json", "Print findings and readings as JSON", &o.json}};
+}
+
+}  // namespace
+
+Command target_check_command() {
+  return make_command(
+      "target check", "Report what would disturb a measurement on a machine", target_check_rows,
+      R"(Exit codes: 0 nothing would disturb a measurement, 1 something would, 2 wrong use,
+3 the machine cannot be reached.
+
+Examples:
+  tether target check
+  tether target check ssh://pi@board.local)",
+      check_target);
 }
 
 }  // namespace tether::app

@@ -15,6 +15,14 @@
 
 namespace tether::app {
 
+namespace {
+
+struct WorldCheckOptions {
+  std::filesystem::path world;
+  ReadingOptions reading;
+};
+
+/// Reads a world as a run does, and prints what of it is not simulated as written.
 int check_world(const WorldCheckOptions& options, const std::stop_token&) {
   // libsdformat takes half a minute for some worlds, and cannot be stopped.
   const os::Interrupt::EndsAtOnce reading;
@@ -39,6 +47,26 @@ int check_world(const WorldCheckOptions& options, const std::stop_token&) {
                                                    counted(warnings.size(), "part")),
                     grouped(warnings, std::numeric_limits<std::size_t>::max())));
   return 0;
+}
+
+Options world_check_rows(WorldCheckOptions& o) {
+  return concatenated(
+      {{{"world", "Name of a shipped world, or a file (SDF)", &o.world, required()}},
+       reading_options(o.reading)});
+}
+
+}  // namespace
+
+Command world_check_command() {
+  return make_command("world check",
+                      "Read a world, and print the parts that are not simulated as written",
+                      world_check_rows,
+                      R"(Exit codes: 0 the world can be used, 2 it cannot, or wrong use.
+
+Examples:
+  tether world check room
+  tether world check warehouse.sdf --missing-models placeholder)",
+                      check_world);
 }
 
 }  // namespace tether::app

@@ -31,8 +31,8 @@ std::optional<shards::Engine> engine_of(const EngineOptions& options) {
   return engine;
 }
 
-int jobs_of(const std::optional<int>& given, const std::optional<shards::Engine>& engine) {
-  return given.value_or(engine ? static_cast<int>(engine->shards) : 1);
+int jobs_of(const EngineOptions& options, const std::optional<shards::Engine>& engine) {
+  return options.jobs.value_or(engine ? static_cast<int>(engine->shards) : 1);
 }
 
 void require_parallel_allowed(const scenario::Campaign& campaign,

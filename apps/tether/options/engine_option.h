@@ -1,6 +1,6 @@
 #pragma once
 
-#include "commands/commands.h"
+#include "options/common_options.h"
 
 #include <filesystem>
 #include <optional>
@@ -15,7 +15,7 @@ namespace tether::app {
 std::optional<shards::Engine> engine_of(const EngineOptions& options);
 
 /// Of --jobs: what was given, or as many shards as the engine has, or 1.
-int jobs_of(const std::optional<int>& given, const std::optional<shards::Engine>& engine);
+int jobs_of(const EngineOptions& options, const std::optional<shards::Engine>& engine);
 
 /// @throws Error(kUsage) about --engine or --jobs if the trials must not be flown beside others.
 void require_parallel_allowed(const scenario::Campaign& campaign,

@@ -1,6 +1,6 @@
 #include "options/output_file.h"
 
-#include "commands/commands.h"
+#include "commands/size_options.h"
 #include "options/refuse_option.h"
 #include "reading/file_kind.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "commands/commands.h"
+#include "options/common_options.h"
 
 #include <string>
 

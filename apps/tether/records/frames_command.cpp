@@ -1,4 +1,5 @@
 #include "commands/commands.h"
+#include "options/common_options.h"
 #include "reading/file_kind.h"
 #include "records/output_folder.h"
 #include "terminal/say.h"
@@ -23,6 +24,11 @@
 namespace tether::app {
 
 namespace {
+
+struct FramesOptions {
+  std::filesystem::path record;
+  std::filesystem::path out;
+};
 
 std::string why_no_images(const record::Record& record) {
   if (record.damage.empty())
@@ -89,8 +95,7 @@ std::vector<Frame> frames_of(const record::Record& record) {
   return frames;
 }
 
-}  // namespace
-
+/// Draws the recorded camera images with their ROIs.
 int draw_frames(const FramesOptions& options, const std::stop_token&) {
   require_kind(options.record, FileKind::kRecord);
   const record::Record record = read_images(options.record);
@@ -103,6 +108,27 @@ int draw_frames(const FramesOptions& options, const std::stop_token&) {
     os::write_file_atomically(out / frame.name, frame.content(record, frame.index));
   fmt::print("{} images in {}\n", frames.size(), out.string());
   return 0;
+}
+
+Options frames_rows(FramesOptions& o) {
+  return {record_argument(o.record),
+          {"--out FOLDER", "Folder for the images [frames, next to the record]", &o.out}};
+}
+
+}  // namespace
+
+Command frames_command() {
+  return make_command(
+      "frames",
+      "Extract the recorded images: colours with the tracked and the true ROI (SVG), depths [mm] "
+      "and labels (16-bit PNG)",
+      frames_rows,
+      R"(The run needs the option --images. A depth is 0 where nothing was measured, or beyond 65.535 m.
+
+Example:
+  tether run face_anchor --images --out out/images
+  tether frames out/images/record.mcap)",
+      draw_frames);
 }
 
 }  // namespace tether::app

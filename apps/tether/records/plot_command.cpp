@@ -1,4 +1,5 @@
 #include "commands/commands.h"
+#include "options/common_options.h"
 #include "reading/file_kind.h"
 #include "records/output_folder.h"
 #include "terminal/say.h"
@@ -20,6 +21,11 @@
 namespace tether::app {
 
 namespace {
+
+struct PlotOptions {
+  std::filesystem::path record;
+  std::filesystem::path out;
+};
 
 using NamedPlot = std::pair<std::string, report::Plot>;
 
@@ -51,8 +57,7 @@ std::vector<NamedPlot> plots_of(const record::Record& record) {
   return plots;
 }
 
-}  // namespace
-
+/// Draws ST and ET over wall time, the lag, and the path.
 int draw_plots(const PlotOptions& options, const std::stop_token&) {
   require_kind(options.record, FileKind::kRecord);
   const record::Record record = record::read_record(options.record);
@@ -74,6 +79,24 @@ int draw_plots(const PlotOptions& options, const std::stop_token&) {
     fmt::print("{}\n", (out / name).string());
   }
   return 0;
+}
+
+Options plot_rows(PlotOptions& o) {
+  return {record_argument(o.record),
+          {"--out FOLDER", "Folder for the plots [plots, next to the record]", &o.out}};
+}
+
+}  // namespace
+
+Command plot_command() {
+  return make_command(
+      "plot", "Plot ST and ET over wall time, the lag, and the path of a run (SVG)", plot_rows,
+      R"(Writes timeline.svg (the whole run), timeline_zoom.svg (its first interactions), lag.svg (only
+for synchronised runs) and path.svg. Needs gnuplot.
+
+Example:
+  tether plot out/one/record.mcap)",
+      draw_plots);
 }
 
 }  // namespace tether::app

@@ -30,6 +30,18 @@ namespace tether::app {
 
 namespace {
 
+struct TimingOptions {
+  std::vector<std::filesystem::path> runs;
+  std::filesystem::path against;
+  std::optional<double> limit_percent;
+  std::vector<std::filesystem::path> counted;
+  std::filesystem::path out;
+  std::filesystem::path csv;
+  std::filesystem::path html;
+  std::filesystem::path junit;
+  bool json = false;
+};
+
 namespace fs = std::filesystem;
 
 /// When the run of a record was flown, as its result says; else when the record was written.
@@ -135,10 +147,6 @@ int print_change(const timing::Timing& now, const TimingOptions& options) {
   return limit && timing::is_beyond(comparison, *limit) ? 1 : 0;
 }
 
-}  // namespace
-
-namespace {
-
 int time_all(const TimingOptions& options) {
   timing::Timing timing = read_all(options.runs);
   if (!options.against.empty()) return print_change(timing, options);
@@ -161,11 +169,48 @@ int time_all(const TimingOptions& options) {
   return 0;
 }
 
-}  // namespace
-
 int time_stages(const TimingOptions& options, const std::stop_token&) {
   require_fit(options);
   return with_junit(options.junit, "timing", [&] { return time_all(options); });
+}
+
+Options timing_rows(TimingOptions& o) {
+  return {
+      {"runs", "Runs of one program in one scenario: records, folders of runs, timing files",
+       &o.runs, required()},
+      {"--out FILE", "Timing file to write, for conditions with clock = \"replayed\"", &o.out},
+      {"--counted RUN",
+       "Runs of the same program under a counted target: --out then also has the work of each "
+       "stage, for mode = \"scaled\"",
+       &o.counted},
+      {"--csv FILE", "Table to write as CSV, in seconds", &o.csv},
+      {"--html FILE", "Page to write, with a histogram of each stage", &o.html},
+      {"--against RUN",
+       "Earlier run or timing file: print the change of each stage instead, with its 95 % interval",
+       &o.against},
+      {"--limit PERCENT", "With --against: the most by which a stage may become slower",
+       &o.limit_percent, range(0, 1e6)},
+      {"--json", "Print the table, or the change, as JSON", &o.json},
+      {"--junit FILE",
+       "With --limit: also write the change as JUnit's XML for continuous integration, with a test "
+       "case for each stage",
+       &o.junit}};
+}
+
+}  // namespace
+
+Command timing_command() {
+  return make_command(
+      "timing", "Report what each stage of a program computes, or how that changed", timing_rows,
+      R"(Exit codes: 0 no stage is slower than --limit allows, or there is no limit, 1 one is, 2 wrong
+use or a bad file.
+
+Examples:
+  tether timing out/one/record.mcap
+  tether timing out/campaign/face_anchor/target/seed-* --out board.timing
+  tether timing out/new --against board.timing --limit 10
+  tether timing out/new --against board.timing --limit 10 --junit timing.xml)",
+      time_stages);
 }
 
 }  // namespace tether::app
