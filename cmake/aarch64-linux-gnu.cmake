@@ -10,6 +10,12 @@ get_filename_component(CMAKE_SYSROOT "${TETHER_SYSROOT}" ABSOLUTE)
 set(CMAKE_C_COMPILER aarch64-linux-gnu-gcc)
 set(CMAKE_CXX_COMPILER aarch64-linux-gnu-g++)
 
+# Runs the programs that print their manual pages; without it, packages have none of them.
+find_program(TETHER_QEMU qemu-aarch64)
+if(TETHER_QEMU)
+  set(CMAKE_CROSSCOMPILING_EMULATOR "${TETHER_QEMU}" -L "${CMAKE_SYSROOT}")
+endif()
+
 # Programs that help to build are the host's; all that ends up in the product is from the sysroot.
 set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
 set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)

@@ -31,7 +31,7 @@ const CLI::App& program_of(const CLI::App& command) {
 /// The commands that have this option: "tether run, tether size".
 std::string commands_with(const CLI::App& program, const std::string& option) {
   std::string words;
-  for (const CLI::App* command : program.get_subcommands([](const CLI::App*) { return true; })) {
+  for (const CLI::App* command : subcommands_of(program)) {
     if (command->get_option_no_throw(option) != nullptr)
       words += (words.empty() ? "" : ", ") + command_words(*command);
     if (const std::string further = commands_with(*command, option); !further.empty())
@@ -58,7 +58,7 @@ std::string no_number(const CLI::App& command, const CLI::ParseError& error) {
 std::string what_is_wrong(const CLI::App& command, const CLI::ParseError& error,
                           const std::function<std::string(const std::string&)>& advice) {
   const std::vector<std::string> rest = command.remaining();
-  const auto subcommands = command.get_subcommands([](const CLI::App*) { return true; });
+  const auto subcommands = subcommands_of(command);
   std::vector<std::string> known;
   for (const CLI::App* sub : subcommands) known.push_back(sub->get_name());
   for (const CLI::Option* option : command.get_options())

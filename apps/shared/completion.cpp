@@ -15,22 +15,14 @@ using Visit = std::function<void(const CLI::App& command, const std::string& wor
 
 void visit(const CLI::App& command, const std::string& words, const Visit& of) {
   of(command, words);
-  for (const CLI::App* sub : command.get_subcommands([](const CLI::App*) { return true; }))
+  for (const CLI::App* sub : subcommands_of(command))
     visit(*sub, words + " " + sub->get_name(), of);
-}
-
-std::vector<const CLI::App*> commands_of(const CLI::App& command) {
-  return command.get_subcommands([](const CLI::App*) { return true; });
 }
 
 std::vector<const CLI::Option*> options_of(const CLI::App& command) {
   auto options = command.get_options([](const CLI::Option* o) { return o->nonpositional(); });
   std::erase_if(options, [](const CLI::Option* option) { return option->get_lnames().empty(); });
   return options;
-}
-
-bool takes_value(const CLI::Option& option) {
-  return option.get_items_expected_max() != 0;
 }
 
 std::string joined(const std::vector<std::string>& words, const std::string& gap = " ") {
@@ -117,7 +109,7 @@ std::string bash_script(const CLI::App& program) {
       [&](const auto& kind) { return "words=\"$(" + list_names(name, kind) + ")\""; }, "return",
       [&](const CLI::App& command) {
         std::vector<std::string> words;
-        for (const CLI::App* sub : commands_of(command)) words.push_back(sub->get_name());
+        for (const CLI::App* sub : subcommands_of(command)) words.push_back(sub->get_name());
         for (const CLI::Option* option : options_of(command))
           words.push_back("--" + option->get_lnames().front());
         for (const CLI::Option* option : command.get_options())
@@ -169,7 +161,7 @@ std::string zsh_script(const CLI::App& program) {
         for (const CLI::Option* option : options_of(command))
           options.push_back(
               described("--" + option->get_lnames().front(), option->get_description()));
-        for (const CLI::App* sub : commands_of(command))
+        for (const CLI::App* sub : subcommands_of(command))
           commands.push_back(described(sub->get_name(), sub->get_description()));
         for (const CLI::Option* option : command.get_options())
           if (!option->nonpositional())
@@ -222,11 +214,11 @@ std::string fish_script(const CLI::App& program) {
     for (const CLI::App* at = &command; at->get_parent() != nullptr; at = at->get_parent())
       tests.push_back("__fish_seen_subcommand_from " + at->get_name());
     std::vector<std::string> subs;
-    for (const CLI::App* sub : commands_of(command)) subs.push_back(sub->get_name());
+    for (const CLI::App* sub : subcommands_of(command)) subs.push_back(sub->get_name());
     if (!subs.empty()) tests.push_back("not __fish_seen_subcommand_from " + joined(subs));
     const std::string here =
         "complete -c " + name + (tests.empty() ? "" : " -n '" + joined(tests, "; and ") + "'");
-    for (const CLI::App* sub : commands_of(command))
+    for (const CLI::App* sub : subcommands_of(command))
       script += here + " -f -a " + sub->get_name() + " -d " +
                 quoted(sub->get_description(), "\\'") + "\n";
     for (const CLI::Option* option : options_of(command)) {

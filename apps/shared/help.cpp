@@ -16,37 +16,30 @@ class Format : public CLI::Formatter {
   explicit Format(std::size_t columns) : columns_(columns) { label("Positionals", "Arguments"); }
 
   std::string make_option(const CLI::Option* option, bool is_positional) const override {
-    const Value value = value_of(*option);
     std::string name = is_positional ? option->get_name(true) : option->get_name(false, true);
-    const bool takes_value = !is_positional && option->get_items_expected_max() != 0;
-    if (takes_value) name += " " + value.word;
-    if (option->get_expected_max() == CLI::detail::expected_max_vector_size) name += " ...";
-    std::string text = option->get_description();
-    if (!value.range.empty())
-      text += (value.is_whole ? ". A whole number from " : ". A number from ") + value.range;
-    std::string preset = option->get_default_str();
-    if (value.word == "true|false")
-      preset = preset == "0" ? "false" : preset == "1" ? "true" : preset;
-    if (!preset.empty()) text += " [" + preset + "]";
-    return entry(name, text);
+    if (!is_positional && takes_value(*option)) name += " " + value_of(*option).word;
+    if (is_list(*option)) name += " ...";
+    return entry(name, text_of(*option));
   }
   std::string make_subcommand(const CLI::App* command) const override {
     return entry(command->get_name(), command->get_description());
   }
   std::string make_description(const CLI::App* app) const override {
-    return wrapped(app->get_description() + "\n", columns_);
+    return paragraphs(app->get_description() + "\n");
   }
   std::string make_footer(const CLI::App* app) const override {
-    std::string text = app->get_footer() + "\n";
-    // Where a paragraph is broken in the source says nothing: only blanks begin a line of its own.
+    return paragraphs(app->get_footer() + "\n");
+  }
+
+ private:
+  /// Where a paragraph is broken in the source says nothing: only blanks begin a line of its own.
+  std::string paragraphs(std::string text) const {
     for (std::size_t i = 1; i + 1 < text.size(); ++i)
       if (text[i] == '\n' && text[i - 1] != '\n' && text[i - 1] != ':' && text[i + 1] != '\n' &&
           text[i + 1] != ' ')
         text[i] = ' ';
     return wrapped(text, columns_);
   }
-
- private:
   /// On a narrow terminal, the text begins on a line of its own.
   std::string entry(const std::string& name, const std::string& text) const {
     const std::size_t begin = columns_ < 80 ? 6 : 26;

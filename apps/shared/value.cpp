@@ -45,4 +45,35 @@ Value value_of(const CLI::Option& option) {
   return value;
 }
 
+std::pair<std::string, std::string> split_default(const std::string& text) {
+  const std::size_t bracket = text.rfind(" [");
+  if (!text.ends_with(']') || bracket == std::string::npos) return {text, ""};
+  return {text.substr(0, bracket), text.substr(bracket + 2, text.size() - bracket - 3)};
+}
+
+std::string text_of(const CLI::Option& option) {
+  const Value value = value_of(option);
+  auto [text, preset] = split_default(option.get_description());
+  if (!value.range.empty())
+    text += (text.ends_with('.') ? " A " : ". A ") + std::string(value.is_whole ? "whole " : "") +
+            "number from " + value.range;
+  if (preset.empty()) preset = option.get_default_str();
+  if (value.word == "true|false")
+    preset = preset == "0" ? "false" : preset == "1" ? "true" : preset;
+  if (!preset.empty()) text += " [" + preset + "]";
+  return text;
+}
+
+bool takes_value(const CLI::Option& option) {
+  return option.get_items_expected_max() != 0;
+}
+
+bool is_list(const CLI::Option& option) {
+  return option.get_expected_max() == CLI::detail::expected_max_vector_size;
+}
+
+std::vector<const CLI::App*> subcommands_of(const CLI::App& command) {
+  return command.get_subcommands([](const CLI::App*) { return true; });
+}
+
 }  // namespace tether::app

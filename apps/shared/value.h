@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -15,5 +16,17 @@ struct Value {
   std::vector<std::string> choices{};  ///< empty: not a choice
 };
 Value value_of(const CLI::Option& option);
+
+/// "Folder [out]": "Folder" and "out".
+std::pair<std::string, std::string> split_default(const std::string& text);
+
+/// What an option is for, the range of its number, and its default in brackets at the end.
+std::string text_of(const CLI::Option& option);
+
+bool takes_value(const CLI::Option& option);
+bool is_list(const CLI::Option& option);
+
+/// In the order in which they were added.
+std::vector<const CLI::App*> subcommands_of(const CLI::App& command);
 
 }  // namespace tether::app

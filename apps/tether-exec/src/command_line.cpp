@@ -1,93 +1,108 @@
 #include "command_line.h"
 
+#include "shared/command.h"
+#include "shared/help.h"
+#include "shared/manual.h"
+
 #include <algorithm>
-#include <array>
 #include <charconv>
-#include <cstddef>
+#include <functional>
 #include <map>
-#include <utility>
+#include <stdexcept>
+
+#include <CLI/CLI.hpp>
+#include <unistd.h>
 
 #include <tether/base/version.h>
 #include <tether/client/simulated_vehicle.h>
+#include <tether/os/terminal.h>
 
 namespace tether::exec {
 namespace {
 
-constexpr const char* kHelp =
-    "Usage: tether-exec [OPTIONS] COMMAND [ARGUMENT]...\n"
-    "       tether-exec [OPTIONS] --group SOCKET --members N\n"
-    "       tether-exec --group SOCKET COMMAND [ARGUMENT]...\n"
-    "\n"
-    "Runs a program under test that has several threads or processes. Each call to the UAV waits\n"
-    "only for its own reply. The whole program is stopped while the simulation catches up.\n"
-    "`tether run` sets the environment: TETHER_ADDRESS, TETHER_TOKEN, TETHER_UAV and "
-    "TETHER_CLOCK,\n"
-    "which must be wall or wall*FACTOR.\n"
-    "\n"
-    "The programs of several UAVs on one board form a group. They have one execution time and are\n"
-    "stopped together. One process has --members; one for each program has --group and the\n"
-    "program's command, and ends as the program does.\n"
-    "\n"
-    "Options:\n"
-    "  --freezer KIND  how to stop the program: cgroup (with a cgroup v2), signal (with SIGSTOP) "
-    "or\n"
-    "                  auto (the default: cgroup if the system allows it, otherwise signal)\n"
-    "  --group SOCKET  path of the group's socket, which the process with --members creates\n"
-    "  --members N     number of programs in the group; it begins when all have connected\n"
-    "  --verbose       report the cost of stopping at the end\n"
-    "  --help          print this help and exit\n"
-    "  --version       print the version and exit\n"
-    "\n"
-    "Exit code: that of the program, or 128 + the signal that ended it; with --members, 0. 2: "
-    "wrong\n"
-    "use. 3: set-up failed.\n"
-    "\n"
-    "Examples:\n"
-    "  tether-exec ./my-uav-program --config flight.yaml\n"
-    "  tether-exec --freezer signal --verbose python3 fly.py\n"
-    "  tether-exec --group /tmp/board --members 2 &\n"
-    "  TETHER_UAV=uav1 tether-exec --group /tmp/board ./my-uav-program\n"
-    "In a scenario file:\n"
-    "  command = [\"./my-uav-program\"]\n"
-    "  concurrent = true\n";
+constexpr const char* kDescription =
+    R"(Runs a program under test that has several threads or processes. Each call to the UAV waits only
+for its own reply. The whole program is stopped while the simulation catches up. `tether run` sets
+the environment: TETHER_ADDRESS, TETHER_TOKEN, TETHER_UAV and TETHER_CLOCK, which must be wall or
+wall*FACTOR.
 
-/// Each sets a value, and returns what is wrong with it; empty if nothing is.
-std::string set_freezer(supervisor::Settings& settings, const std::string& freezer) {
-  const std::map<std::string, supervisor::FreezerChoice> choices = {
+The programs of several UAVs on one board form a group. They have one execution time and are stopped
+together. One process has --members; one for each program has only --group and the program's
+command, and ends as the program does.)";
+
+constexpr const char* kFooter =
+    R"(Exit codes: that of the program, or 128 plus the number of the signal that ended it; with
+--members, 0 when all programs of the group have ended. 2: wrong use. 3: set-up failed.
+
+Examples:
+  tether-exec ./my-uav-program --config flight.yaml
+  tether-exec --freezer signal --verbose python3 fly.py
+  tether-exec --group /tmp/board --members 2 &
+  TETHER_UAV=uav1 tether-exec --group /tmp/board ./my-uav-program
+
+In a scenario file:
+  command = ["./my-uav-program"]
+  concurrent = true)";
+
+void set_freezer(supervisor::Settings& settings, const std::string& freezer) {
+  static const std::map<std::string, supervisor::FreezerChoice> kChoices = {
       {"auto", supervisor::FreezerChoice::kAuto},
       {"cgroup", supervisor::FreezerChoice::kCgroup},
       {"signal", supervisor::FreezerChoice::kSignal}};
-  const auto found = choices.find(freezer);
-  if (found == choices.end())
-    return "invalid value '" + freezer + "' of --freezer. Use auto, cgroup or signal";
+  const auto found = kChoices.find(freezer);
+  if (found == kChoices.end()) throw std::invalid_argument("auto, cgroup or signal");
   settings.freezer = found->second;
-  return "";
 }
 
-std::string set_group(supervisor::Settings& settings, const std::string& socket) {
-  settings.group = socket;
-  return "";
-}
-
-std::string set_members(supervisor::Settings& settings, const std::string& number) {
+void set_members(supervisor::Settings& settings, const std::string& number) {
   constexpr int kMost = 1024;
   const auto [end, error] =
       std::from_chars(number.data(), number.data() + number.size(), settings.members);
   const bool is_number = error == std::errc() && end == number.data() + number.size();
-  if (is_number && settings.members >= 1 && settings.members <= kMost) return "";
-  return "invalid value '" + number + "' of --members. Use a number from 1 to " +
-         std::to_string(kMost);
+  if (!is_number || settings.members < 1 || settings.members > kMost)
+    throw std::invalid_argument("a number from 1 to " + std::to_string(kMost));
 }
 
-struct ValueOption {
-  std::string name;
-  std::string value;  ///< what it needs
-  std::string (*set)(supervisor::Settings&, const std::string&);
+/// A function throws what could be used instead of the value.
+struct Row {
+  app::Option option;
+  const char* needs = "";  ///< what is missing without a value
 };
-const std::array kValueOptions = {
-    ValueOption{"--freezer", "a value. Use auto, cgroup or signal", &set_freezer},
-    ValueOption{"--group", "the path of a socket", &set_group},
-    ValueOption{"--members", "a number", &set_members}};
+
+std::vector<Row> rows_of(supervisor::Settings& settings) {
+  return {{{"--freezer auto|cgroup|signal",
+            "How to stop the program: cgroup (with a cgroup v2), signal (with SIGSTOP) or auto "
+            "(cgroup if the system allows it, otherwise signal) [auto]",
+            [&](const std::string& word) { set_freezer(settings, word); }},
+           "a value. Use auto, cgroup or signal"},
+          {{"--group SOCKET",
+            "Path of the group's socket, which the process with --members creates; the others wait "
+            "up to 10 seconds for it",
+            [&](const std::string& path) { settings.group = path; }},
+           "the path of a socket"},
+          {{"--members N",
+            "Number of programs in the group, from 1 to 1024; it begins when all have connected",
+            [&](const std::string& number) { set_members(settings, number); }},
+           "a number"},
+          {{"--verbose", "Report the cost of stopping at the end", &settings.verbose}}};
+}
+
+/// For arguments that ask for a text, and run no program.
+std::optional<std::string> asked_text(const std::vector<std::string>& arguments,
+                                      const std::vector<Row>& rows) {
+  CLI::App program(kDescription, "tether-exec");
+  program.footer(kFooter);
+  program.set_version_flag("--version", "tether-exec " + std::string(version()));
+  program.formatter(app::help_format(os::text_columns(STDOUT_FILENO)));
+  for (const Row& row : rows) app::add_options(program, {row.option});
+  std::string command;
+  std::vector<std::string> words;
+  app::add_options(program, {{"COMMAND", "Program to run; none with --members", &command},
+                             {"ARGUMENT", "Its arguments", &words}});
+  if (arguments.front() == "--help" || arguments.front() == "-h") return program.help();
+  if (arguments.front() == "--version") return program.version() + "\n";
+  return app::asked_manual_page(program, arguments);
+}
 
 Parsed wrong_use(const std::string& what) {
   return {{}, Notice{"tether-exec: " + what + " (see tether-exec --help)\n", 2}};
@@ -111,35 +126,39 @@ std::string conflict(const supervisor::Settings& settings, bool has_own_options)
 Parsed parse_command_line(const std::vector<std::string>& arguments) {
   Parsed parsed;
   bool has_own_options = false;  // of a process that stops programs
-  std::size_t i = 0;
-  for (; i < arguments.size() && arguments[i].rfind('-', 0) == 0; ++i) {
-    const std::string& option = arguments[i];
+  const std::vector<Row> rows = rows_of(parsed.settings);
+  auto at = arguments.begin();
+  for (; at != arguments.end() && at->starts_with('-'); ++at) {
+    const std::string option = *at;
     if (option == "--") {
-      ++i;
+      ++at;
       break;
     }
-    if (option == "--help" || option == "-h") return {{}, Notice{kHelp, 0}};
-    if (option == "--version")
-      return {{}, Notice{"tether-exec " + std::string(version()) + "\n", 0}};
-    if (option == "--verbose") {
-      parsed.settings.verbose = has_own_options = true;
+    const std::string name = option.substr(0, option.find('='));
+    const auto row = std::ranges::find(rows, name, [](const Row& r) { return key_of(r.option); });
+    if (row == rows.end()) {
+      const auto text = asked_text({at, arguments.end()}, rows);
+      return text ? Parsed{{}, Notice{*text, 0}} : wrong_use("unknown option " + option);
+    }
+    has_own_options |= name == "--freezer" || name == "--verbose";
+    if (auto* const* flag = std::get_if<bool*>(&row->option.destination)) {
+      if (name != option) return wrong_use("unknown option " + option);
+      **flag = true;
       continue;
     }
-    const std::string name = option.substr(0, option.find('='));
-    const auto found = std::ranges::find(kValueOptions, name, &ValueOption::name);
-    if (found == kValueOptions.end()) return wrong_use("unknown option " + option);
     std::string value;
     if (name != option)
       value = option.substr(name.size() + 1);
-    else if (i + 1 < arguments.size())
-      value = arguments[++i];
-    if (value.empty()) return wrong_use(name + " needs " + found->value);
-    const std::string error = found->set(parsed.settings, value);
-    if (!error.empty()) return wrong_use(error);
-    has_own_options = has_own_options || name == "--freezer";
+    else if (at + 1 != arguments.end())
+      value = *++at;
+    if (value.empty()) return wrong_use(name + " needs " + row->needs);
+    try {
+      std::get<std::function<void(const std::string&)>>(row->option.destination)(value);
+    } catch (const std::invalid_argument& allowed) {
+      return wrong_use("invalid value '" + value + "' of " + name + ". Use " + allowed.what());
+    }
   }
-  parsed.settings.command.assign(arguments.begin() + static_cast<std::ptrdiff_t>(i),
-                                 arguments.end());
+  parsed.settings.command.assign(at, arguments.end());
   const std::string wrong = conflict(parsed.settings, has_own_options);
   if (!wrong.empty()) return wrong_use(wrong);
   return parsed;
@@ -153,10 +172,9 @@ Status read_environment(supervisor::Settings& settings) {
                    "TETHER_EXEC is set, so this process already runs under tether-exec"};
   }
   if (options->time->clock().kind != computer::ClockKind::kWall) {
-    return Failure{
-        Failure::Kind::kInvalid,
-        "TETHER_CLOCK must be wall or wall*FACTOR, because only the wall clock works for "
-        "several threads"};
+    return Failure{Failure::Kind::kInvalid,
+                   "TETHER_CLOCK must be wall or wall*FACTOR, because only the wall clock works "
+                   "for several threads"};
   }
   settings.coordinator = options->address;
   settings.token = options->token;

@@ -4,6 +4,7 @@
 #include "shared/complaint.h"
 #include "shared/completion.h"
 #include "shared/help.h"
+#include "shared/manual.h"
 #include "shared/within.h"
 
 #include <algorithm>
@@ -409,6 +410,8 @@ std::variant<CommandLine, Refusal> parse_command_line(int argc, const char* cons
   define_subcommands(program, words);
   std::string shell;
   app::add_completion_command(program, shell);
+  if (const auto page = app::asked_manual_page(program, {argv + 1, argv + argc}))
+    return Refusal{0, *page};
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -25,8 +25,8 @@ struct CommandLine {
   bool only_checks = false;  ///< nothing is left to do
 };
 
-/// A text to print instead of running a command, and the exit code: 0 for --help, --version
-/// and the script for a shell, 2 for wrong use, with one line.
+/// A text to print instead of running a command, and the exit code: 0 for --help, --version,
+/// the manual page and the script for a shell, 2 for wrong use, with one line.
 struct Refusal {
   int exit_code = 2;
   std::string text;

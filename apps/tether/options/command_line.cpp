@@ -5,6 +5,7 @@
 #include "shared/complaint.h"
 #include "shared/completion.h"
 #include "shared/help.h"
+#include "shared/manual.h"
 #include "terminal/print.h"
 
 #include <functional>
@@ -96,6 +97,10 @@ int run_command_line(int argc, char** argv, std::optional<os::Interrupt>& interr
       return 0;
     };
   });
+  if (const auto page = asked_manual_page(program, {argv + 1, argv + argc})) {
+    fmt::print("{}", *page);
+    return 0;
+  }
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

@@ -79,7 +79,7 @@ Fields turning_fields(tasks::FaceAnchorOptions& options) {
          plain(options.slowdown, 0.01, 1.0)},
         {"min_yaw_rate_deg_s", "Minimum yaw rate",
          degrees(options.min_yaw_rate_rad_s, 0.01, 720.0)},
-        {"search_clockwise", "true or false: direction of the turn until the anchor is first seen",
+        {"search_clockwise", "Clockwise: direction of the turn until the anchor is first seen",
          BooleanField{&options.search_clockwise}},
         {"lost_limit_s", "Maximum time without seeing the anchor", seconds(options.lost_limit)}},
        convergence_fields(options.convergence)});
@@ -117,7 +117,7 @@ Fields fields(tasks::MoveForwardOptions& options, TaskSpec& spec) {
                    degrees(options.face.precision_rad, 0.001, 90.0)},
                   {"face_time_limit_s", "While turning: time limit, after which it moves on",
                    seconds(options.face.time_limit)},
-                  {"stop_to_face", "true or false: stop while turning towards the anchor",
+                  {"stop_to_face", "Stop while turning towards the anchor",
                    BooleanField{&options.stop_to_face}}},
                  turning_fields(options.face),
                  {{"imu", "Name of the IMU for the heading, or the device of a real one",
@@ -170,13 +170,13 @@ Fields fields(tasks::GoToOptions& options, TaskSpec&) {
 }
 
 Fields fields(tasks::SearchOptions& options, TaskSpec& spec) {
-  return joined({vision_fields(spec),
-                 {{"yaw_rate_deg_s", "Yaw rate", degrees(options.yaw_rate_rad_s, 0.01, 720.0)},
-                  {"search_clockwise", "true or false: direction of the turn",
-                   BooleanField{&options.clockwise}},
-                  {"frames", "Number of consecutive images in which the anchor must be seen",
-                   IntegerField{&options.frames, 1, 1000}},
-                  time_limit(options.time_limit)}});
+  return joined(
+      {vision_fields(spec),
+       {{"yaw_rate_deg_s", "Yaw rate", degrees(options.yaw_rate_rad_s, 0.01, 720.0)},
+        {"search_clockwise", "Clockwise: direction of the turn", BooleanField{&options.clockwise}},
+        {"frames", "Number of consecutive images in which the anchor must be seen",
+         IntegerField{&options.frames, 1, 1000}},
+        time_limit(options.time_limit)}});
 }
 
 Fields fields(tasks::HoldOptions& options, TaskSpec&) {
@@ -259,17 +259,17 @@ std::vector<Field> vision_fields(TaskSpec& spec) {
   return {
       {"anchor", "Name of the anchor", TextField{&spec.anchor, true}},
       {"camera", "Name of the camera, or the device of a real one", TextField{&spec.vision.camera}},
-      {"prefilter", "Smoothing of each image: none, gaussian (default) or median",
+      {"prefilter", "Smoothing of each image: none, gaussian or median [gaussian]",
        ChoiceField{{"none", "gaussian", "median"},
                    [&tracker](std::size_t index) { tracker.prefilter = kPrefilters[index]; }}},
-      {"prefilter_size_px", "Odd, 1 to 31", IntegerField{&tracker.prefilter_size_px, 1, 31, true}},
+      {"prefilter_size_px", "Size of that filter, odd",
+       IntegerField{&tracker.prefilter_size_px, 1, 31, true}},
       {"hue_tolerance_deg", "Tolerance around the anchor's hue",
        plain(tracker.hue_tolerance_deg, 0.1, 90.0)},
-      {"min_saturation", "Minimum saturation of the anchor's pixels, 0 to 1",
+      {"min_saturation", "Minimum saturation of the anchor's pixels",
        share(tracker.min_saturation)},
-      {"min_value", "Minimum value of the anchor's pixels, 0 to 1", share(tracker.min_value)},
-      {"min_score", "Score below which the anchor counts as lost, 0 to 1",
-       share(tracker.min_score)},
+      {"min_value", "Minimum value of the anchor's pixels", share(tracker.min_value)},
+      {"min_score", "Score below which the anchor counts as lost", share(tracker.min_score)},
   };
 }
 

@@ -45,7 +45,7 @@ template <class Sample, class Callback>
 tether_status subscribe_struct(tether_vehicle* vehicle, const char* sensor, Callback callback,
                                void* user, tether_subscription** out) {
   const auto show = [=](const Sample& sample) {
-    const auto shown = to_c(sample);
+    const auto shown = tether::c_api::to_c(sample);
     callback(&shown, user);
   };
   return subscribe<Sample>(vehicle, sensor, callback != nullptr, show, out);

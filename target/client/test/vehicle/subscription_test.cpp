@@ -77,7 +77,7 @@ TEST(Subscription, NeedsAPeriodicSensorOfItsKindAndTetherExec) {
   ConnectOptions options;
   options.time = make_wall_source();
   const auto serial = connect(coordinator.connect(), std::move(options)).value();
-  expect_invalid(subscribe_range(*serial, "down", on_range));
+  expect_invalid(subscribe<uav::RangeSample>(*serial, "down", on_range));
 }
 
 }  // namespace

@@ -85,7 +85,7 @@ TEST(SerialVehicle, ACallDuringTheCallOfAnotherThreadEndsTheRun) {
                            std::make_unique<ManualTimeSource>(computer::ClockKind::kCpu),
                            std::make_unique<FakeWallTimer>(), Duration::zero());
   std::thread first(
-      [&] { EXPECT_TRUE(static_cast<Vehicle&>(vehicle).read<uav::ImuSample>("imu").ok()); });
+      [&] { EXPECT_TRUE(vehicle.read<uav::ImuSample>("imu").ok()); });
   has_begun.get_future().wait();
   std::thread release([&] {
     std::this_thread::sleep_for(50ms);
