@@ -84,8 +84,7 @@ TEST(SerialVehicle, ACallDuringTheCallOfAnotherThreadEndsTheRun) {
   SimulatedVehicle vehicle(coordinator.connect(), welcome,
                            std::make_unique<ManualTimeSource>(computer::ClockKind::kCpu),
                            std::make_unique<FakeWallTimer>(), Duration::zero());
-  std::thread first(
-      [&] { EXPECT_TRUE(vehicle.read<uav::ImuSample>("imu").ok()); });
+  std::thread first([&] { EXPECT_TRUE(vehicle.read<uav::ImuSample>("imu").ok()); });
   has_begun.get_future().wait();
   std::thread release([&] {
     std::this_thread::sleep_for(50ms);
