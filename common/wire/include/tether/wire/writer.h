@@ -214,7 +214,7 @@ class TableWriter {
   void add_union(const T* value, std::size_t before) {
     const auto kind = static_cast<std::uint8_t>(value ? before + value->index() + 1 : 0);
     const flatbuffers::uoffset_t child =
-        value ? std::visit([this](const auto& table) { return write(table); }, *value) : 0;
+        value ? std::visit([this](const auto& table) { return this->write(table); }, *value) : 0;
     add_number(kind, std::uint8_t{0});
     add_child(child);
   }
