@@ -103,7 +103,7 @@ Cases cases_of(const CLI::App& program,
 }
 
 std::string bash_script(const CLI::App& program) {
-  const std::string name = program.get_name();
+  const std::string& name = program.get_name();
   const Cases cases = cases_of(
       program, [](const auto& choices) { return "words='" + joined(choices) + "'"; },
       [&](const auto& kind) { return "words=\"$(" + list_names(name, kind) + ")\""; }, "return",
@@ -145,7 +145,7 @@ complete -o default -F )" +
 }
 
 std::string zsh_script(const CLI::App& program) {
-  const std::string name = program.get_name();
+  const std::string& name = program.get_name();
   const auto described = [](const std::string& word, const std::string& text) {
     const std::string shown = quoted(text, "'\\''");
     return "'" + word + ":" + shown.substr(1);
@@ -206,7 +206,7 @@ std::string fish_names(const std::string& program, const std::string& kind) {
 }
 
 std::string fish_script(const CLI::App& program) {
-  const std::string name = program.get_name();
+  const std::string& name = program.get_name();
   std::string script;
   visit(program, name, [&](const CLI::App& command, const std::string&) {
     // The commands that lead here must be on the line, and none of those that lead further.
@@ -254,7 +254,7 @@ CLI::App* add_completion_command(CLI::App& program, std::string& shell) {
   command->add_option("shell", shell, "Which shell")
       ->required()
       ->check(CLI::IsMember(std::vector<std::string>(kShells.begin(), kShells.end())));
-  const std::string name = program.get_name();
+  const std::string& name = program.get_name();
   command->footer("The Debian packages install it. Otherwise, in ~/.bashrc:\n  eval \"$(" + name +
                   " completion bash)\"");
   return command;
