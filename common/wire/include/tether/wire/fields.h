@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -86,14 +87,15 @@ template <class Holds, std::size_t kSize>
 Rule(Holds, const char (&)[kSize]) -> Rule<Holds, const char*>;
 
 inline constexpr Rule kNotNegative{
-    [](const auto& value) { return value >= decltype(value - value){}; }, "is negative"};
+    [](const auto& value) { return std::remove_cvref_t<decltype(value)>{} <= value; },
+    "is negative"};
 inline constexpr Rule kPositive{[](double value) { return value > 0.0; },
                                 "is not a positive number"};
 inline constexpr Rule kNotEmpty{[](const auto& value) { return !value.empty(); }, "is empty"};
 inline constexpr Rule kShare{[](double value) { return value >= 0.0 && value <= 1.0; },
                              "is not within 0..1"};
 inline constexpr Rule kNotZero{[](const auto& value) { return value != 0; }, "is 0"};
-inline constexpr Rule kNoNan{[](double value) { return value == value; }, "is not a number"};
+inline constexpr Rule kNoNan{[](double value) { return !std::isnan(value); }, "is not a number"};
 
 /// An enumeration whose last member is this.
 template <class Enum>
