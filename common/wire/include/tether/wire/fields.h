@@ -68,7 +68,7 @@ struct After {
   std::size_t members = 0;
 };
 
-/// Bytes that are not copied into the frame: they are a piece of their own.
+/// Bytes that are not copied into the frame: they are a piece of their own. One field of a frame.
 struct Apart {};
 
 /// A floating-point number that need not be finite.

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <cassert>
 #include <cstdint>
 #include <cstring>
 #include <optional>
@@ -139,7 +138,7 @@ class TableWriter {
     void (*place)(flatbuffers::FlatBufferBuilder&, const Slot&);
     Content content;
   };
-  static constexpr std::size_t kMaxFields = 24;
+  static constexpr std::size_t kMaxFields = 24;  ///< of a table that are not absent
 
   template <Table T>
   flatbuffers::uoffset_t write(const T& value) {
@@ -177,8 +176,7 @@ class TableWriter {
   }
 
   Slot& next(std::size_t size) {
-    assert(count_ < kMaxFields);
-    Slot& slot = slots_[count_++];
+    Slot& slot = slots_.at(count_++);
     slot.field = flatbuffers::FieldIndexToOffset(next_field_++);
     slot.size = size;
     return slot;
