@@ -91,7 +91,7 @@ void fly(Vehicle& vehicle, int steps) {
     const double yaw_rate_rad_s = i % 20 < 10 ? 0.3 : -0.3;
     require(vehicle.command_velocity({.velocity_H_m_s = {}, .yaw_rate_rad_s = yaw_rate_rad_s}));
     require(vehicle.sleep_for(10ms));
-    const auto range = vehicle.read<uav::RangeSample>("range");
+    const auto range = vehicle.read<tether::uav::RangeSample>("range");
     require(range ? tether::ok_status() : tether::Status(range.failure()));
     require(vehicle.annotate("step", "{\"i\": " + std::to_string(i) + "}"));
     require(vehicle.sleep_for(3ms));
@@ -309,7 +309,7 @@ const std::map<std::string, std::function<int(Vehicle&)>> kFlyingModes = {
     {"latest",
      [](Vehicle& v) {
        for (int i = 0; i < kSteps; ++i) {
-         const auto imu = v.read<uav::ImuSample>("imu", tether::client::Read::kLatest);
+         const auto imu = v.read<tether::uav::ImuSample>("imu", tether::client::Read::kLatest);
          require(imu ? tether::ok_status() : tether::Status(imu.failure()));
          require(v.sleep_for(10ms));
        }
@@ -366,7 +366,7 @@ const std::map<std::string, std::function<int(Vehicle&)>> kFlyingModes = {
      }},
     {"look",
      [](Vehicle& v) -> int {
-       const auto image = v.read<uav::CameraSample>("camera");
+       const auto image = v.read<tether::uav::CameraSample>("camera");
        require(image ? tether::ok_status() : tether::Status(image.failure()));
        return finish(v, true);
      }},

@@ -168,7 +168,7 @@ void fly(Vehicle& vehicle, std::uint64_t tenths) {
       work((1000 + 77 * i) * tenths / 10);
     }
     require(vehicle.command_velocity({.velocity_H_m_s = {}, .yaw_rate_rad_s = 0.3}));
-    require(require(vehicle.read<uav::RangeSample>("range")).range_m > 0.0
+    require(require(vehicle.read<tether::uav::RangeSample>("range")).range_m > 0.0
                 ? tether::ok_status()
                 : tether::Failure{tether::Failure::Kind::kInvalid, "no range"});
     require(vehicle.annotate("step", "{\"i\": " + std::to_string(i) + "}"));

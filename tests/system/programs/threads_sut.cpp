@@ -125,7 +125,7 @@ std::string run_count(Vehicle& vehicle, ExecTime end) {
   }
   int images = 0;
   for (; vehicle.now() < end; ++images) {
-    const auto image = require(vehicle.read<uav::CameraSample>("camera"));
+    const auto image = require(vehicle.read<tether::uav::CameraSample>("camera"));
     if (image.sampled_at > tether::same_instant(vehicle.now())) fail("an image from the future");
     require(vehicle.command_velocity({}));
   }
@@ -187,7 +187,7 @@ std::string run_with_spawning(Vehicle& vehicle, ExecTime end) {
   int count = 0;
   std::thread spawning([&] { count = spawn_until(over); });
   while (vehicle.now() < end) {
-    require(vehicle.read<uav::RangeSample>("range"));
+    require(vehicle.read<tether::uav::RangeSample>("range"));
     require(vehicle.sleep_for(2ms));
   }
   over = true;
