@@ -97,6 +97,13 @@ void count(ConditionVerdict& verdict, const campaign::TrialResult& trial) {
         warning.can_change_verdict && warning.consequence != Consequence::kDoubtfulStart &&
         std::ranges::count(verdict.left_out, line) == 0)
       verdict.left_out.push_back(line);
+  if (trial.pace)
+    for (const Speed::Program& program : trial.pace->speed.programs) {
+      // What follows are arguments and files, which a program may write itself.
+      const std::string id = program.build.substr(0, program.build.find('\n'));
+      const auto known = verdict.build_ids.emplace(program.uav, id).first;
+      verdict.mixes_builds |= known->second != id;
+    }
   if (trial.replay)
     for (const std::string& stage : trial.replay->unknown_stages)
       if (std::ranges::count(verdict.uncharged, stage) == 0) verdict.uncharged.push_back(stage);
@@ -136,7 +143,7 @@ Ruling ruling_of(const ConditionVerdict& verdict, const campaign::ConditionResul
     return Ruling::kUnseen;
   const bool all = verdict.reached == verdict.flown;
   if (all && std::ranges::none_of(trials, has_limit)) return Ruling::kNothingToDecide;
-  if (is_within_spread(verdict)) return Ruling::kUndecided;
+  if (is_within_spread(verdict) || verdict.mixes_builds) return Ruling::kUndecided;
   if (verdict.share->low >= kWantedSuccess) return Ruling::kFastEnough;
   if (all) return Ruling::kFastEnoughSoFar;
   const bool is_missed = verdict.share->high < kWantedSuccess || verdict.is_one_flight();

@@ -378,6 +378,21 @@ TEST(Verdict, CountsCopiesOfAFlightOnce) {
                          "reach the goal"));
 }
 
+// A script that starts the program is the same after the program was built again.
+TEST(Verdict, IsUndecidedIfFlightsAreOfDifferentBuilds) {
+  auto results = sample_results({{"host", {4.0, 4.0, 4.0}}});
+  auto& trials = results.conditions[0].trials;
+  for (campaign::TrialResult& trial : trials)
+    trial.pace = Pace{.speed = {.programs = {{.uav = "uav1", .build = "35ed\nfile log 1"}}}};
+  trials[1].pace->speed.programs[0].build = "35ed\nfile log 2";
+  EXPECT_EQ(verdict_of(results).first().ruling, Ruling::kNothingToDecide) << "the program's file";
+  trials[2].pace->speed.programs[0].build = "3f07\nfile log 1";
+  for (campaign::TrialResult& trial : trials) trial.metrics[0].max = 5.0;
+  EXPECT_EQ(verdict_of(results).first().ruling, Ruling::kUndecided);
+  EXPECT_THAT(verdict_text({verdict_of(results)}, Markup::kPlain),
+              HasSubstr("The flights are of different builds of the program"));
+}
+
 TEST(Verdict, HasNoAnswerIfTimePassesUnseen) {
   campaign::ScenarioResults scenario = flights(1, 0);
   std::vector<campaign::Doubt>& doubts = scenario.conditions[0].trials[0].this_run.doubts;

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -112,6 +113,9 @@ struct ConditionVerdict {
   std::vector<std::string> left_out{};
   /// Stages that the flights computed for nothing: times are replayed, and have none of them.
   std::vector<std::string> uncharged{};
+  /// Of the program of each UAV, the build id in the first flight.
+  std::map<std::string, std::string> build_ids{};
+  bool mixes_builds = false;  ///< other flights have other ones
   std::optional<Pace> pace{};
   std::string unknown_pace{};        ///< why it is not known; empty: there is none to know
   std::optional<MissReason> miss{};  ///< of the three rulings on a missed goal
