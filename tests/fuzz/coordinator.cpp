@@ -64,7 +64,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     return now + peers.passed;
   });
   const coordinator::RunReport report = coordinator.run(peers);
-  fuzz::require_honest(report, recorder.record,
+  fuzz::require_honest(report, recorder.take(),
                        options.policy == sync::SyncPolicy::kConservativeBarrier);
   return 0;
 }
