@@ -33,7 +33,8 @@ int main(int argc, char** argv) {
   if (!vehicle) return fail(vehicle.failure());
   // The last one is the end.
   for (std::uint64_t i = 1; i < interactions; i += 2) {
-    if (const auto imu = (*vehicle)->read<tether::uav::ImuSample>("imu"); !imu) return fail(imu.failure());
+    if (const auto imu = (*vehicle)->read<tether::uav::ImuSample>("imu"); !imu)
+      return fail(imu.failure());
     if (i + 1 == interactions) break;
     if (const Status sent = turn(**vehicle, i / 2); !sent) return fail(sent.failure());
   }
