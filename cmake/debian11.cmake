@@ -19,8 +19,7 @@ foreach(kind IN ITEMS EXE SHARED MODULE)
     "-L${CMAKE_SYSROOT}/usr/lib/${arch}" "-L${CMAKE_SYSROOT}/lib/${arch}")
 endforeach()
 
-# Programs that help to build are this machine's, but for the compiler of messages, whose output
-# belongs to the headers of the same version.
+# Programs that help to build are this machine's.
 set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
 set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
 set(CMAKE_FIND_ROOT_PATH_MODE_INCLUDE ONLY)
