@@ -2,9 +2,7 @@
 
 #include "json_text.h"
 
-#include <set>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include <tether/link/codec.h>
@@ -68,14 +66,8 @@ void stage_fields(auto& io, const char* name, auto& stages) {
                      return true;
                    },
                    "has a stage without a name"};
-  const Rule unique{[](const std::vector<StageTime>& times) {
-                      std::set<std::string_view> names;
-                      for (const StageTime& time : times)
-                        if (!names.insert(time.stage).second) return false;
-                      return true;
-                    },
-                    "has a stage twice"};
-  io(name, stages, OmitEmpty{}, AtMost{kMaxStages, "has too many stages"}, named, unique);
+  io(name, stages, OmitEmpty{}, AtMost{kMaxStages, "has too many stages"}, named,
+     wire::unique_by(&StageTime::stage, "has a stage twice"));
 }
 
 void fields(auto& io, Is<Welcome> auto& m) {

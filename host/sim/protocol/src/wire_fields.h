@@ -64,11 +64,7 @@ void fields(auto& io, Is<BodyName> auto& m) {
 }
 
 void fields(auto& io, Is<VisualMaterial> auto& m) {
-  const Rule color{[](const uav::Vec3& rgb) {
-                     const auto& is_share = wire::kShare.holds;
-                     return is_share(rgb.x) && is_share(rgb.y) && is_share(rgb.z);
-                   },
-                   "is not within 0..1"};
+  const auto color = uav::of_each_part(wire::kShare);
   io.here([&m] { return "Open.looks '" + m.model + "': "; });
   io("model", m.model, kName);
   io("link", m.link, kName);

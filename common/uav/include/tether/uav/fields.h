@@ -1,10 +1,7 @@
 #pragma once
 
 #include <cmath>
-#include <set>
-#include <string>
-#include <string_view>
-#include <vector>
+#include <cstdint>
 
 #include <tether/uav/catalogue.h>
 #include <tether/uav/math.h>
@@ -34,6 +31,13 @@ using wire::Is;
 
 /// Most bytes of an image: those of 4096×4096 pixels with colours and depths.
 inline constexpr std::size_t kMaxImageBytes = (128u << 20) - 4096;
+
+/// A rule on a number, for each part of a vector.
+constexpr auto of_each_part(const auto& rule) {
+  return wire::Rule{
+      [rule](const Vec3& v) { return rule.holds(v.x) && rule.holds(v.y) && rule.holds(v.z); },
+      rule.text};
+}
 
 constexpr void fields(auto& io, Is<Vec3> auto& v) {
   io("x", v.x);
@@ -67,10 +71,8 @@ constexpr void fields(auto& io, Is<Rotor> auto& rotor) {
 
 void fields(auto& io, Is<MultirotorParameters> auto& m) {
   using wire::kNotNegative;
-  const wire::Rule positive{[](const Vec3& v) { return v.x > 0.0 && v.y > 0.0 && v.z > 0.0; },
-                            "is not positive"};
   io("mass_kg", m.mass_kg, wire::kPositive);
-  io("inertia_kg_m2", m.inertia_kg_m2, positive);
+  io("inertia_kg_m2", m.inertia_kg_m2, of_each_part(wire::kPositive));
   io("rotors", m.rotors, wire::AtMost{MultirotorState::kMaxRotors, "are not 1 to 8"},
      wire::Rule{[](const auto& rotors) { return !rotors.empty(); }, "are not 1 to 8"});
   io("thrust_coefficient", m.thrust_coefficient, kNotNegative);
@@ -134,29 +136,19 @@ void fields(auto& io, Is<SensorDescription> auto& m) {
 
 void fields(auto& io, Is<Anchor> auto& m) {
   io.here([&m] { return "anchor '" + m.name.substr(0, kMaxNameBytes) + "': "; });
-  const auto each = [](const Vec3& v, auto holds) {
-    return holds(v.x) && holds(v.y) && holds(v.z);
-  };
   io("name", m.name, wire::AtMost{kMaxNameBytes}, wire::kNotEmpty);
   io("shape", m.shape, wire::known_up_to(AnchorShape::kSphere));
-  io("size_m", m.size_m,
-     wire::Rule{[=](const Vec3& v) { return each(v, [](double s) { return s >= 0.0; }); },
-                "is negative"});
-  io("color_rgb", m.color_rgb,
-     wire::Rule{[=](const Vec3& v) { return each(v, wire::kShare.holds); }, "is not within 0..1"});
+  io("size_m", m.size_m, of_each_part(wire::kNotNegative));
+  io("color_rgb", m.color_rgb, of_each_part(wire::kShare));
 }
 
 void fields(auto& io, Is<Catalogue> auto& m) {
-  const wire::Rule unique{[](const auto& entries) {
-                            std::set<std::string_view> names;
-                            for (const auto& entry : entries)
-                              if (!names.insert(entry.name).second) return false;
-                            return true;
-                          },
-                          "have the same name twice"};
+  constexpr const char* kTwice = "have the same name twice";
   io("uav", m.uav, wire::AtMost{kMaxNameBytes});
-  io("sensors", m.sensors, wire::AtMost{kMaxCatalogueEntries}, unique);
-  io("anchors", m.anchors, wire::AtMost{kMaxCatalogueEntries}, unique);
+  io("sensors", m.sensors, wire::AtMost{kMaxCatalogueEntries},
+     wire::unique_by(&SensorDescription::name, kTwice));
+  io("anchors", m.anchors, wire::AtMost{kMaxCatalogueEntries},
+     wire::unique_by(&Anchor::name, kTwice));
   io("battery_capacity_c", m.battery_capacity_C, wire::kNotNegative);
 }
 

@@ -4,8 +4,11 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <set>
+#include <string>
 #include <string_view>
 #include <type_traits>
+#include <vector>
 
 /// How a message says its fields: once, for everything that is done with them.
 ///
@@ -96,6 +99,18 @@ inline constexpr Rule kShare{[](double value) { return value >= 0.0 && value <= 
                              "is not within 0..1"};
 inline constexpr Rule kNotZero{[](const auto& value) { return value != 0; }, "is 0"};
 inline constexpr Rule kNoNan{[](double value) { return !std::isnan(value); }, "is not a number"};
+
+/// Of a list: no two items have the same text in that member.
+template <class Item>
+constexpr auto unique_by(std::string Item::*member, const char* complaint) {
+  return Rule{[member](const std::vector<Item>& items) {
+                std::set<std::string_view> texts;
+                for (const Item& item : items)
+                  if (!texts.insert(item.*member).second) return false;
+                return true;
+              },
+              complaint};
+}
 
 /// An enumeration whose last member is this.
 template <class Enum>
