@@ -276,7 +276,7 @@ std::string left_out_in_lead(const ConditionVerdict& condition) {
   return condition.left_out.empty()
              ? fmt::format(", but {} of {} failed", condition.failed,
                            counted(condition.flown + condition.failed, "flight"))
-             : ", but not everything is simulated as written";
+             : kNotAsWritten;
 }
 
 std::string lead_of(const ConditionVerdict& condition) {

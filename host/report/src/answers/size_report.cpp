@@ -1,3 +1,4 @@
+#include "answers/sufficient.h"
 #include "tables/report_format.h"
 
 #include <algorithm>
@@ -56,11 +57,9 @@ std::string than(double slowdown) {
 /// What the first words must say of the flights on which they rest.
 std::string reservation(const SizedCondition& sized) {
   const bool leaves_out = std::ranges::any_of(sized.trials, [](const auto& trial) {
-    return std::ranges::any_of(trial.warnings, [](const Warning& warning) {
-      return warning.can_change_verdict && warning.consequence != Consequence::kDoubtfulStart;
-    });
+    return std::ranges::any_of(trial.warnings, is_left_out);
   });
-  return leaves_out ? ", but not everything is simulated as written;" : ",";
+  return leaves_out ? std::string(kNotAsWritten) + ";" : ",";
 }
 
 Answer main_answer(const SizeReport& report) {

@@ -60,4 +60,8 @@ std::vector<Answer> sufficient_factors(const std::vector<Verdict>& points) {
   return answers;
 }
 
+bool is_left_out(const Warning& warning) {
+  return warning.can_change_verdict && warning.consequence != Consequence::kDoubtfulStart;
+}
+
 }  // namespace tether::report

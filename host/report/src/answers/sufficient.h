@@ -18,4 +18,8 @@ std::string other_settings(const Verdict& point);
 /// factor up to which it is fast enough. @pre the points are of one scenario; not empty.
 std::vector<Answer> sufficient_factors(const std::vector<Verdict>& points);
 
+/// Whether what the flight left out can change its verdict, and is not only a doubtful start.
+bool is_left_out(const Warning& warning);
+inline constexpr const char* kNotAsWritten = ", but not everything is simulated as written";
+
 }  // namespace tether::report

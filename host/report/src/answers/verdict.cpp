@@ -94,16 +94,8 @@ void count(ConditionVerdict& verdict, const campaign::TrialResult& trial) {
   ++verdict.flown;
   for (const Warning& warning : trial.warnings)
     if (const std::string line = warning.subject + " " + warning.message;
-        warning.can_change_verdict && warning.consequence != Consequence::kDoubtfulStart &&
-        std::ranges::count(verdict.left_out, line) == 0)
+        is_left_out(warning) && std::ranges::count(verdict.left_out, line) == 0)
       verdict.left_out.push_back(line);
-  if (trial.pace)
-    for (const Speed::Program& program : trial.pace->speed.programs) {
-      // What follows are arguments and files, which a program may write itself.
-      const std::string id = program.build.substr(0, program.build.find('\n'));
-      const auto known = verdict.build_ids.emplace(program.uav, id).first;
-      verdict.mixes_builds |= known->second != id;
-    }
   if (trial.replay)
     for (const std::string& stage : trial.replay->unknown_stages)
       if (std::ranges::count(verdict.uncharged, stage) == 0) verdict.uncharged.push_back(stage);
@@ -151,6 +143,20 @@ Ruling ruling_of(const ConditionVerdict& verdict, const campaign::ConditionResul
   return is_missed && verdict.throttled == 0 ? Ruling::kGoalMissed : Ruling::kUndecided;
 }
 
+/// Whether the program of a UAV was built again between these flights.
+bool mix_builds(const std::vector<const campaign::TrialResult*>& flights) {
+  std::map<std::string, std::string> build_ids;  // of each UAV, in the first flight
+  for (const campaign::TrialResult* flight : flights) {
+    if (!flight->pace) continue;
+    for (const Speed::Program& program : flight->pace->speed.programs) {
+      // What follows are arguments and files, which a program may write itself.
+      const std::string id = program.build.substr(0, program.build.find('\n'));
+      if (build_ids.emplace(program.uav, id).first->second != id) return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 bool is_within_spread(const ConditionVerdict& verdict, const FlightsInDoubt& doubt) {
@@ -177,6 +183,7 @@ ConditionVerdict verdict_of(const campaign::ConditionResults& results) {
     if (trial.outcome != campaign::Outcome::kFailed) flown.push_back(&trial);
   }
   verdict.missed = missed_limits(flown);
+  verdict.mixes_builds = mix_builds(flown);
   const auto distinct = campaign::distinct_flights(results.trials);
   verdict.distinct = distinct.size();
   verdict.distinct_reached = static_cast<std::size_t>(std::ranges::count(

@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -113,9 +112,7 @@ struct ConditionVerdict {
   std::vector<std::string> left_out{};
   /// Stages that the flights computed for nothing: times are replayed, and have none of them.
   std::vector<std::string> uncharged{};
-  /// Of the program of each UAV, the build id in the first flight.
-  std::map<std::string, std::string> build_ids{};
-  bool mixes_builds = false;  ///< other flights have other ones
+  bool mixes_builds = false;  ///< of the program of a UAV, from flight to flight
   std::optional<Pace> pace{};
   std::string unknown_pace{};        ///< why it is not known; empty: there is none to know
   std::optional<MissReason> miss{};  ///< of the three rulings on a missed goal
