@@ -106,10 +106,7 @@ void Interrupt::watch() {
     if (got != 1 || signal == kEnd) return;
     stop_.request_stop();
     const bool is_second = signal != SIGHUP && first_ && Steady::now() - *first_ > kSameInterrupt;
-    if (is_second || ends_at_once_) {
-      remove_temporary_folders();
-      _exit(128 + signal);
-    }
+    if (is_second || ends_at_once_) end_without_temporary_folders(128 + signal);
     if (signal == SIGHUP) continue;  // the kernel and the shell send one each, at any distance
     if (!first_) first_ = Steady::now();
   }

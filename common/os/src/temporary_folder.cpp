@@ -4,6 +4,8 @@
 #include <set>
 #include <system_error>
 
+#include <unistd.h>
+
 #include <tether/base/error.h>
 #include <tether/base/system_reason.h>
 #include <tether/os/temporary_folder.h>
@@ -21,9 +23,13 @@ Living& living() {
   return all;
 }
 
+/// Again if another thread made a file in it meanwhile.
 void remove_quietly(const std::filesystem::path& folder) {
-  std::error_code ignored;
-  std::filesystem::remove_all(folder, ignored);
+  std::error_code error;
+  for (int attempt = 0; attempt < 10; ++attempt) {
+    std::filesystem::remove_all(folder, error);
+    if (!error) return;
+  }
 }
 
 /// $TMPDIR, else /tmp. `temp_directory_path` fails if $TMPDIR is not a folder.
@@ -39,6 +45,8 @@ TemporaryFolder::TemporaryFolder(const std::string& prefix)
 
 TemporaryFolder::TemporaryFolder(const std::string& prefix, const std::filesystem::path& parent) {
   std::string name = (parent / (prefix + "XXXXXX")).string();
+  // Held while it is made: a folder that exists is known.
+  const std::lock_guard lock(living().mutex);
   if (::mkdtemp(name.data()) == nullptr) {
     const std::string reason = "cannot be made: " + reason_of(errno);
     throw Error(ErrorCode::kSetup, {name},
@@ -47,7 +55,6 @@ TemporaryFolder::TemporaryFolder(const std::string& prefix, const std::filesyste
                     : reason);
   }
   path_ = name;
-  const std::lock_guard lock(living().mutex);
   living().folders.insert(path_);
 }
 
@@ -57,9 +64,10 @@ TemporaryFolder::~TemporaryFolder() {
   living().folders.erase(path_);
 }
 
-void remove_temporary_folders() {
-  const std::lock_guard lock(living().mutex);
+void end_without_temporary_folders(int exit_code) {
+  const std::lock_guard lock(living().mutex);  // until the end: nobody makes another one
   for (const std::filesystem::path& folder : living().folders) remove_quietly(folder);
+  _exit(exit_code);
 }
 
 }  // namespace tether::os

@@ -1,5 +1,10 @@
+#include <atomic>
+#include <cstdlib>
 #include <fstream>
+#include <memory>
 #include <optional>
+#include <thread>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -24,6 +29,27 @@ TEST(TemporaryFolder, IsThisUsersAloneAndGoesWithItsContent) {
 TEST(TemporaryFolder, SaysWhichFolderCannotBeMade) {
   const Error error = thrown_error(ErrorCode::kSetup, [] { TemporaryFolder("some-", "/nowhere"); });
   EXPECT_TRUE(error.where().file.starts_with("/nowhere/some-")) << error.what();
+}
+
+// A thread makes folders and files until the process ends.
+TEST(TemporaryFolder, IsGoneWithAProcessThatEndsAtOnce) {
+  const ScratchFolder parent;
+  setenv("TMPDIR", parent.path().c_str(), 1);
+  EXPECT_EXIT(
+      {
+        std::atomic<int> made{0};
+        const std::thread maker([&made] {
+          for (std::vector<std::unique_ptr<TemporaryFolder>> folders;; ++made) {
+            folders.push_back(std::make_unique<TemporaryFolder>("some-"));
+            std::ofstream(*folders.back() / "file") << "text";
+          }
+        });
+        while (made < 20) std::this_thread::yield();
+        end_without_temporary_folders(7);
+      },
+      ::testing::ExitedWithCode(7), "");
+  unsetenv("TMPDIR");
+  EXPECT_TRUE(std::filesystem::is_empty(parent.path()));
 }
 
 }  // namespace

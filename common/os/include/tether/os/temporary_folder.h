@@ -24,8 +24,8 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
-/// Removes the folders of all objects that live; for a process that ends without their destructors.
-/// Thread-safe.
-void remove_temporary_folders();
+/// Removes the folders of all objects that live and ends the process at once, without destructors.
+/// Thread-safe: no thread makes another folder meanwhile.
+[[noreturn]] void end_without_temporary_folders(int exit_code);
 
 }  // namespace tether::os
