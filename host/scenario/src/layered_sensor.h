@@ -1,5 +1,7 @@
 #pragma once
 
+#include "sensors/sensor_key.h"
+
 #include <tether/base/error.h>
 #include <tether/scenario/profile.h>
 #include <tether/sim/world.h>
@@ -15,33 +17,24 @@ class LayeredSensor {
   explicit LayeredSensor(sim::Sensor& sensor);
 
   const sim::Sensor& sensor() const { return *sensor_; }
-  /// @throws Error(kBadFile) at a key of `layer` that a sensor of this kind does not support: also
-  ///   limits of a camera without depths, antialiasing of one without colours, and noise of a
-  ///   segmentation camera.
+  /// @throws Error(kBadFile) at a key of `layer` that a sensor of this kind does not support.
+  /// @pre `layer` outlives the object.
   void lay(const SensorProfile& layer);
   /// After the last layer: sets the sensor's update rate and returns its timing.
-  /// @throws Error(kBadFile), about the sensor, at the last layer that set one of two values that
-  ///   exclude each other.
+  /// @throws Error(kBadFile), at the last layer that set it, about one of two values that exclude
+  ///   each other, or that does not fit what the sensor is in SDF.
   uav::SensorTiming finish();
   /// Where its rate was last set.
   const FileLocation& rate_at() const { return rate_at_; }
 
  private:
   void lay_timing(const SensorProfile& layer);
-  void lay_model(const SensorProfile& layer, sim::CameraModel& camera);
-  void lay_model(const SensorProfile& layer, sim::ImuModel& imu);
-  void lay_model(const SensorProfile& layer, sim::RangeModel& range);
-  void check(const sim::CameraModel& camera) const;
-  void check(const sim::ImuModel&) const {}
-  void check(const sim::RangeModel& range) const { check_limits(range.min_m, range.max_m); }
-  void check_limits(double min_m, double max_m) const;
 
   sim::Sensor* sensor_;
+  Laid laid_;
   uav::SensorTiming timing_;
   FileLocation rate_at_;
-  FileLocation limits_at_;   // where a limit of distances was last set
-  FileLocation shutter_at_;  // where a camera's shutter or period was last set
-  bool is_timed_ = false;    // by a layer
+  bool is_timed_ = false;  // by a layer
 };
 
 }  // namespace tether::scenario

@@ -171,6 +171,11 @@ TEST_F(Layered, TheLastLayerThatSetsItDecidesWhetherACameraIsAntialiased) {
   EXPECT_EQ(model.antialias_at.line, 5);
 }
 
+TEST_F(Layered, AnEmptyNoiseIsNoNoise) {
+  lay(range_, {layer("range", "noise_m = {}\n")});
+  EXPECT_EQ(std::get<sim::RangeModel>(range_.model).noise, sim::Noise{});
+}
+
 // Timing.
 
 TEST_F(Layered, ATimingReplacesTheWholeTimingBelow) {

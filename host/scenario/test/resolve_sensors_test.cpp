@@ -117,7 +117,9 @@ TEST_F(ResolveSensors, ALaterLayerOverridesAnEarlierOne) {
   EXPECT_EQ(max_m(0, 0), 1.0);
   EXPECT_EQ(max_m(1, 1), 4.0);
 
-  scenario_.uavs[0].sensors.at("range").max_m = 2.0;
+  scenario_.uavs[0].sensors.at("range").settings.push_back(
+      {uav::SensorKind::kRange,
+       [](sim::Sensor& s) { std::get<sim::RangeModel>(s.model).max_m = 2.0; }});
   resolve();
   EXPECT_EQ(max_m(0, 0), 2.0);
 

@@ -1,3 +1,4 @@
+#include "sensor_world.h"
 #include "test_files.h"
 
 #include <functional>
@@ -56,8 +57,11 @@ TEST_F(Settings, AreInTheScenariosName) {
 TEST_F(Settings, ReplaceValuesOfSensorsThatAProfileHas) {
   for (const std::string from : {"", "uav."}) {
     const std::string key = from + "sensors.camera.noise.stddev";
-    EXPECT_EQ(load({{key, "0.5"}}).uavs.front().profile->sensors.at("camera").pixel_noise->stddev,
-              0.5);
+    const Scenario scenario = load({{key, "0.5"}});
+    sim::Sensor camera = make_camera("camera");
+    for (const auto& setting : scenario.uavs.front().profile->sensors.at("camera").settings)
+      setting.set(camera);
+    EXPECT_EQ(std::get<sim::CameraModel>(camera.model).pixel_noise.stddev, 0.5);
     const Error error = bad_file_error([&] { load({{key, "-1"}}); });
     EXPECT_EQ(error.subject(), "stddev");
     EXPECT_THAT(error.what(), testing::StartsWith("--set " + key + "=-1: 'stddev'"));

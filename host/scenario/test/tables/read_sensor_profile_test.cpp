@@ -29,22 +29,6 @@ TEST_F(ReadSensorProfile, ReadsADelayWithoutATiming) {
   EXPECT_EQ(std::get<uav::ConstantDelay>(*range.delay).value, Duration(97'700'000));
 }
 
-TEST_F(ReadSensorProfile, AnEmptyNoiseIsNoNoise) {
-  const SensorProfile range =
-      sensor_with("range", "noise_m = { mean = 0.01, stddev = 0.005 }", "noise_m = {}");
-  ASSERT_TRUE(range.range_noise);
-  EXPECT_EQ(range.range_noise->mean, 0.0);
-  EXPECT_EQ(range.range_noise->stddev, 0.0);
-  EXPECT_FALSE(range.pixel_noise || range.p_BS || range.q_BS);
-}
-
-TEST_F(ReadSensorProfile, LeavesAntialiasingUnsetUnlessTheFileSetsIt) {
-  const std::string key = "antialias = true";
-  EXPECT_EQ(sensor_with("camera", key, key).antialias, true);
-  EXPECT_EQ(sensor_with("camera", key, "antialias = false").antialias, false);
-  EXPECT_EQ(sensor_with("camera", key, "").antialias, std::nullopt);
-}
-
 TEST_F(ReadSensorProfile, KnowsTheLineOfEachKey) {
   const SensorProfile camera = sensor_with("camera", "every key", "the same");
   EXPECT_EQ(camera.where.line, 4);

@@ -11,7 +11,6 @@
 #include <tether/base/error.h>
 #include <tether/sim/world.h>
 #include <tether/uav/catalogue.h>
-#include <tether/uav/math.h>
 #include <tether/uav/sensor_timing.h>
 
 /// Profiles (TOML): the properties and the timing of sensors (paper, Section IV), which override
@@ -19,14 +18,13 @@
 /// and each other is checked when they are applied to it.
 namespace tether::scenario {
 
-struct ImageSize {
-  int width_px = 0;
-  int height_px = 0;
-};
+/// Sets one value of a sensor, of the kind that the value is for.
+using SensorSetter = std::function<void(sim::Sensor&)>;
 
-/// The coefficients of uav::CameraModel.
-struct Distortion {
-  double k1 = 0.0, k2 = 0.0, k3 = 0.0, p1 = 0.0, p2 = 0.0;
+/// A key of a sensor's table, as it was read for a kind of sensor.
+struct SensorSetting {
+  std::optional<uav::SensorKind> kind;  ///< none: any
+  SensorSetter set;
 };
 
 /// One table about a sensor: [sensors.NAME] of a profile, [uav.sensors.NAME] of a scenario. An
@@ -42,31 +40,8 @@ struct SensorProfile {
   /// Without `timing`: replaces the delay alone.
   std::optional<uav::Delay> delay;
 
-  std::optional<uav::Vec3> p_BS;  ///< mounting [m]
-  std::optional<uav::Quat> q_BS;
-
-  // Of a camera.
-  std::optional<ImageSize> size;
-  std::optional<double> horizontal_fov_rad;  ///< without distortion
-  std::optional<Distortion> distortion;
-  std::optional<sim::Noise> pixel_noise;  ///< of a depth camera, of depths [m]
-  std::optional<double> exposure_s;
-  std::optional<double> readout_s;
-  std::optional<bool> antialias;
-
-  // Of an IMU; for all three axes.
-  std::optional<sim::Noise> angular_velocity_noise;
-  std::optional<sim::Noise> linear_acceleration_noise;
-
-  // Of a rangefinder, or of a camera that measures depths.
-  std::optional<double> min_m;
-  std::optional<double> max_m;
-
-  // Of a rangefinder.
-  std::optional<double> resolution_m;
-  std::optional<double> field_of_view_rad;
-  std::optional<double> dropout_probability;
-  std::optional<sim::Noise> range_noise;
+  /// What the other keys set: in this order.
+  std::vector<SensorSetting> settings;
 
   /// The line of the key; of the table's header if the key is missing.
   FileLocation at(std::string_view key) const;
