@@ -1,6 +1,6 @@
 #pragma once
 
-#include "sensors.h"
+#include "sensors/measurement.h"
 
 #include <cstdint>
 #include <span>

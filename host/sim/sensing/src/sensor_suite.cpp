@@ -1,6 +1,7 @@
 #include "ahead_drawer.h"
 #include "image_maker.h"
-#include "sensors.h"
+#include "sensors/imu.h"
+#include "sensors/range.h"
 
 #include <string>
 #include <utility>

@@ -1,5 +1,6 @@
 #include "fake_back_end.h"
-#include "sensors.h"
+#include "sensors/imu.h"
+#include "sensors/range.h"
 
 #include <algorithm>
 #include <memory>
