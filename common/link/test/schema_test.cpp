@@ -25,6 +25,14 @@ TEST(Schema, HasTheFieldsOfEachMessageInTheirOrder) {
   expect_same<uav::Catalogue>("Catalogue");
   expect_same<uav::CameraSample>("CameraSample");
   expect_same<uav::ImuSample>("ImuSample");
+  expect_same<uav::NavSatProperties>("NavSatProperties");
+  expect_same<uav::NavSatSample>("NavSatSample");
+  expect_same<uav::MagnetometerProperties>("MagnetometerProperties");
+  expect_same<uav::MagnetometerSample>("MagnetometerSample");
+  expect_same<uav::BarometerProperties>("BarometerProperties");
+  expect_same<uav::BarometerSample>("BarometerSample");
+  expect_same<uav::OdometryProperties>("OdometryProperties");
+  expect_same<uav::OdometrySample>("OdometrySample");
   expect_same<uav::RangeSample>("RangeSample");
   expect_same<uav::BatterySample>("BatterySample");
   expect_same<uav::SensorDescription>("Sensor");

@@ -97,6 +97,50 @@ TEST_F(Layered, EveryKeyOfARangefinderArrives) {
   EXPECT_GT(model.rays_S.size(), 1u);
 }
 
+TEST_F(Layered, EveryKeyOfAReceiverArrives) {
+  sim::Sensor navsat{"navsat", {}, 10.0, sim::NavSatModel{}};
+  lay(navsat, {layer("navsat",
+                     "horizontal_noise_m = { stddev = 1 }\n"
+                     "vertical_noise_m = { stddev = 2 }\n"
+                     "horizontal_velocity_noise_m_s = { stddev = 3 }\n"
+                     "vertical_velocity_noise_m_s = { stddev = 4 }\n"
+                     "outage_every_s = 60\noutage_lasts_s = 5\n")});
+  const auto& model = std::get<sim::NavSatModel>(navsat.model);
+  EXPECT_THAT((std::vector{model.horizontal_m.stddev, model.vertical_m.stddev,
+                           model.horizontal_velocity_m_s.stddev, model.vertical_velocity_m_s.stddev,
+                           model.outage_every_s, model.outage_lasts_s}),
+              ElementsAre(1.0, 2.0, 3.0, 4.0, 60.0, 5.0));
+  expect_refusal(4, "navsat", [&] { lay(navsat, {layer("navsat", "outage_lasts_s = 61\n")}); });
+}
+
+TEST_F(Layered, EveryKeyOfAMagnetometerAndABarometerArrives) {
+  sim::Sensor magnetometer{"magnetometer", {}, 10.0, sim::MagnetometerModel{}};
+  lay(magnetometer, {layer("magnetometer",
+                           "noise_T = { stddev = 1e-7 }\n"
+                           "hard_iron_T = [1e-6, -2e-6, 0]\n")});
+  const auto& model = std::get<sim::MagnetometerModel>(magnetometer.model);
+  for (const sim::Noise& axis : model.field_T) EXPECT_EQ(axis.stddev, 1e-7);
+  EXPECT_EQ(model.hard_iron_T, (uav::Vec3{1e-6, -2e-6, 0.0}));
+  sim::Sensor barometer{"barometer", {}, 10.0, sim::BarometerModel{}};
+  lay(barometer, {layer("barometer", "noise_Pa = { stddev = 3 }\n")});
+  EXPECT_EQ(std::get<sim::BarometerModel>(barometer.model).pressure_Pa.stddev, 3.0);
+}
+
+TEST_F(Layered, EveryKeyOfAnOdometryArrives) {
+  sim::Sensor odometry{"odometry", {}, 10.0, sim::OdometryModel{}};
+  lay(odometry, {layer("odometry",
+                       "position_noise_m = { stddev = 1 }\n"
+                       "velocity_noise_m_s = { stddev = 2 }\n"
+                       "tilt_noise_rad = { stddev = 3 }\n"
+                       "yaw_noise_rad = { stddev = 4 }\n"
+                       "angular_velocity_noise_rad_s = { stddev = 5 }\n")});
+  const auto& model = std::get<sim::OdometryModel>(odometry.model);
+  EXPECT_THAT(
+      (std::vector{model.position_m.stddev, model.velocity_m_s.stddev, model.tilt_rad.stddev,
+                   model.yaw_rad.stddev, model.angular_velocity_rad_s.stddev}),
+      ElementsAre(1.0, 2.0, 3.0, 4.0, 5.0));
+}
+
 // The SDF's camera sees up to 100 m.
 TEST_F(Layered, LimitsOfDepthsArriveAndTheCameraSeesAsFar) {
   for (const auto kind : {uav::CameraKind::kDepth, uav::CameraKind::kRgbd}) {

@@ -4,23 +4,37 @@ namespace tether::sim {
 
 namespace {
 
-uav::CameraProperties describe_camera(const World& world, const CameraModel& camera) {
+uav::CameraProperties describe(const World& world, const CameraModel& camera) {
   uav::CameraProperties properties{camera.intrinsics, camera.kind, camera.depth_min_m,
                                    camera.depth_max_m};
   if (camera.kind == uav::CameraKind::kSegmentation) properties.models = model_names(world);
   return properties;
 }
 
+uav::ImuProperties describe(const World&, const ImuModel&) {
+  return {};
+}
+uav::RangeProperties describe(const World&, const RangeModel& range) {
+  return {range.min_m, range.max_m};
+}
+uav::NavSatProperties describe(const World&, const NavSatModel&) {
+  return {};
+}
+uav::MagnetometerProperties describe(const World&, const MagnetometerModel&) {
+  return {};
+}
+uav::BarometerProperties describe(const World&, const BarometerModel&) {
+  return {};
+}
+uav::OdometryProperties describe(const World&, const OdometryModel&) {
+  return {};
+}
+
 uav::SensorDescription describe_sensor(const World& world, const Sensor& sensor) {
-  uav::SensorDescription description{sensor.name, sensor.X_BS, sensor.update_rate_hz, {}};
-  if (const auto* camera = std::get_if<CameraModel>(&sensor.model)) {
-    description.properties = describe_camera(world, *camera);
-  } else if (const auto* range = std::get_if<RangeModel>(&sensor.model)) {
-    description.properties = uav::RangeProperties{range->min_m, range->max_m};
-  } else {
-    description.properties = uav::ImuProperties{};
-  }
-  return description;
+  using Properties = decltype(uav::SensorDescription::properties);
+  return {sensor.name, sensor.X_BS, sensor.update_rate_hz,
+          std::visit([&](const auto& model) -> Properties { return describe(world, model); },
+                     sensor.model)};
 }
 
 }  // namespace

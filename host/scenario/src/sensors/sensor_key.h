@@ -90,12 +90,18 @@ struct Finished {
 std::vector<SensorKey> keys_of(std::type_identity<sim::CameraModel>);
 std::vector<SensorKey> keys_of(std::type_identity<sim::ImuModel>);
 std::vector<SensorKey> keys_of(std::type_identity<sim::RangeModel>);
+std::vector<SensorKey> keys_of(std::type_identity<sim::NavSatModel>);
+std::vector<SensorKey> keys_of(std::type_identity<sim::MagnetometerModel>);
+std::vector<SensorKey> keys_of(std::type_identity<sim::BarometerModel>);
+std::vector<SensorKey> keys_of(std::type_identity<sim::OdometryModel>);
 
 /// Sets what follows from other values, and checks what the values are together.
 /// @throws Error(kBadFile)
 void complete(sim::CameraModel& camera, const Finished& sensor);
-inline void complete(sim::ImuModel&, const Finished&) {}
 void complete(sim::RangeModel& range, const Finished& sensor);
+void complete(sim::NavSatModel& navsat, const Finished& sensor);
+/// Of a kind whose values can have any combination.
+void complete(auto&, const Finished&) {}
 
 /// The rows of that kind, in the order in which they are set.
 const std::vector<SensorKey>& keys_of(uav::SensorKind kind);

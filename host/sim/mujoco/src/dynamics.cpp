@@ -156,8 +156,8 @@ void Dynamics::read_engine() {
   }
   for (std::size_t i = 0; i < motions_.size(); ++i) {
     const mjtNum* qacc = data_->qacc + qvel_address(i);
-    motions_[i] = {vec3_from(data_->qvel + qvel_address(i) + 3), vec3_from(qacc),
-                   vec3_from(qacc + 3)};
+    const mjtNum* qvel = data_->qvel + qvel_address(i);
+    motions_[i] = {vec3_from(qvel + 3), vec3_from(qacc), vec3_from(qacc + 3), vec3_from(qvel)};
   }
 }
 

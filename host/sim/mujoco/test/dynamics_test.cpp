@@ -170,6 +170,7 @@ TEST(DynamicsTest, MotionIsTheChangeOfVelocity) {
   dynamics.capture(state);
   const BodyMotion motion = StateLayout(world).motion_of(state, 0);
   EXPECT_EQ(motion.w_WB_B, after.w_WB_B);
+  EXPECT_EQ(motion.v_WB_W, after.v_WB);
   EXPECT_LT(norm(motion.a_WB_W - 1000.0 * (after.v_WB - before.v_WB)), 1e-9);
   EXPECT_LT(norm(motion.alpha_WB_B - 1000.0 * (after.w_WB_B - before.w_WB_B)), 1e-9);
 }

@@ -152,7 +152,8 @@ class RemoteSimulator final : public Simulator {
     for (const uav::BodyState& body : state_.bodies) X_WB_.push_back({body.p_WB, body.q_WB});
     for (std::size_t i = 0; i < state_.motions.size(); ++i) {
       const protocol::Motion& motion = state_.motions[i];
-      motions_.push_back({state_.bodies[i].w_WB_B, motion.a_WB_W, motion.alpha_WB_B});
+      const uav::BodyState& body = state_.bodies[i];
+      motions_.push_back({body.w_WB_B, motion.a_WB_W, motion.alpha_WB_B, body.v_WB});
     }
   }
 

@@ -101,6 +101,19 @@ void read_step(const SdfSource& source, const sdf::World& sdf_world, World& worl
   }
 }
 
+void read_earth(const SdfSource& source, const sdf::World& sdf_world, World& world) {
+  if (const auto* place = sdf_world.SphericalCoordinates()) {
+    world.place = Place{place->LatitudeReference().Degree(), place->LongitudeReference().Degree(),
+                        place->ElevationReference(), place->HeadingOffset().Radian()};
+    const sdf::ElementPtr frame = sdf_world.Element()
+                                      ->GetElement("spherical_coordinates")
+                                      ->FindElement("world_frame_orientation");
+    if (frame && frame->Get<std::string>() != "ENU")
+      refuse(source, frame, "is not ENU, the only orientation that Tether knows");
+  }
+  world.magnetic_field_T = to_vec3(sdf_world.MagneticField());
+}
+
 void read_scene(const sdf::Scene* scene, World& world) {
   if (scene == nullptr) return;
   world.ambient_rgb = to_vec3(scene->Ambient());
@@ -127,6 +140,7 @@ World read_world(const SdfSource& source, const WarningSink& warn) {
   world.name = sdf_world.Name();
   world.gravity_m_s2 = read_gravity(source, sdf_world);
   read_step(source, sdf_world, world);
+  read_earth(source, sdf_world, world);
   for (std::uint64_t i = 0; i < sdf_world.ModelCount(); ++i) {
     add_model(source, *sdf_world.ModelByIndex(i), {}, "", false, warn, world);
     warn_of_lost_motion(source, *sdf_world.ModelByIndex(i), false, warn);
@@ -179,6 +193,17 @@ void add_uavs(const WorldRequest& request, const WarningSink& warn, World& world
   }
 }
 
+/// A receiver needs a place; where it is changes no flight.
+void warn_without_place(const World& world, const WarningSink& warn) {
+  if (world.place || !warn) return;
+  for (const Uav& uav : world.uavs)
+    for (const Sensor& sensor : uav.sensors)
+      if (sensor.kind() == uav::SensorKind::kNavSat)
+        return warn({Consequence::kNoEffect, sensor.declared_at, "sensor '" + sensor.name + "'",
+                     "measures latitude and longitude, but the world has no "
+                     "<spherical_coordinates>: it is put near Zurich, as PX4's worlds are"});
+}
+
 }  // namespace
 
 Light read_light(const SdfSource& source, const sdf::Light& light, const Pose& X_WP) {
@@ -209,6 +234,7 @@ World load_world(const WorldRequest& request, const WarningSink& any_warn) {
         world.file = source.file();
         world.sdf_files = source.sdf_files();
         add_uavs(request, warn, world);
+        warn_without_place(world, warn);
         for (const std::string& name : request.anchors)
           world.anchors.push_back(find_anchor(source, world, name, request.anchors_at));
         world.files.merge(source.files());

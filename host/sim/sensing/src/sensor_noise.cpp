@@ -105,6 +105,14 @@ double noise_value(const Noise& noise, const NoiseKey& key) {
          walking_bias(noise, key.seed, key.stream, key.at);
 }
 
+double noise_stddev(const Noise& noise, SimTime at) {
+  const double tau_s = noise.dynamic_bias_correlation_time_s;
+  const double walk = tau_s > 0.0 ? 0.5 * noise.dynamic_bias_stddev * noise.dynamic_bias_stddev *
+                                        tau_s * -std::expm1(-2.0 * to_seconds(at) / tau_s)
+                                  : 0.0;
+  return std::sqrt(noise.stddev * noise.stddev + noise.bias_stddev * noise.bias_stddev + walk);
+}
+
 void add_depth_noise(const Noise& noise, const NoiseKey& key, std::span<float> depth_m) {
   const double offset = image_offset(noise, key);
   if (offset == 0.0 && noise.stddev == 0.0) return;

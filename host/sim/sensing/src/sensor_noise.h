@@ -29,6 +29,9 @@ double noise_value(const Noise& noise, const NoiseKey& key);
 /// own, so that any instant can be evaluated alone. Constant within each millisecond.
 double walking_bias(const Noise& noise, std::uint64_t seed, std::uint64_t stream, SimTime at);
 
+/// The standard deviation of `noise_value` at one instant, over all seeds.
+double noise_stddev(const Noise& noise, SimTime at);
+
 /// Adds the noise of measurement `key` to depths [m]: one bias for the whole image, white noise for
 /// each pixel. Depths that are not finite stay as they are.
 void add_depth_noise(const Noise& noise, const NoiseKey& key, std::span<float> depth_m);

@@ -1,6 +1,7 @@
 #include "ahead_drawer.h"
 #include "image_maker.h"
 #include "sensors/imu.h"
+#include "sensors/navigation.h"
 #include "sensors/range.h"
 
 #include <string>
@@ -41,6 +42,11 @@ uav::Sample SensorSuite::measure(const Snapshot& snapshot, std::size_t uav, std:
                                  std::uint64_t index) {
   const Sensor& mounted = sensor_of(uav, sensor);
   const MeasurementKey key{seed_, world_.uavs[uav].name, mounted.name, index, snapshot.at};
+  const Place place = world_.place.value_or(Place{});
+  const auto truth = [&] {
+    return motion_of_sensor(layout_.pose_of(snapshot.state, uav),
+                            layout_.motion_of(snapshot.state, uav), mounted.X_BS);
+  };
   return std::visit(
       Visitor{[&](const ImuModel& imu) -> uav::Sample {
                 return measure_imu(imu, mounted.X_BS, layout_.pose_of(snapshot.state, uav),
@@ -51,7 +57,19 @@ uav::Sample SensorSuite::measure(const Snapshot& snapshot, std::size_t uav, std:
                 cast(range, snapshot.state, uav, mounted.X_BS);
                 return measure_range(range, distances_m_, key);
               },
-              [&](const CameraModel&) { return picture(snapshot, uav, sensor, index); }},
+              [&](const CameraModel&) { return picture(snapshot, uav, sensor, index); },
+              [&](const NavSatModel& navsat) -> uav::Sample {
+                return measure_navsat(navsat, truth(), place, key);
+              },
+              [&](const MagnetometerModel& magnetometer) -> uav::Sample {
+                return measure_magnetometer(magnetometer, truth(), world_.magnetic_field_T, key);
+              },
+              [&](const BarometerModel& barometer) -> uav::Sample {
+                return measure_barometer(barometer, truth(), place, key);
+              },
+              [&](const OdometryModel& odometry) -> uav::Sample {
+                return measure_odometry(odometry, truth(), key);
+              }},
       mounted.model);
 }
 

@@ -61,7 +61,7 @@ uav::Pose StateLayout::pose_of(const std::vector<double>& state, std::size_t bod
 
 BodyMotion StateLayout::motion_of(const std::vector<double>& state, std::size_t uav) const {
   const double* motion = state.data() + motion_at(uav);
-  return {read_vec3(motion), read_vec3(motion + 3), read_vec3(motion + 6)};
+  return {read_vec3(motion), read_vec3(motion + 3), read_vec3(motion + 6), read_vec3(motion + 9)};
 }
 
 uav::Pose StateLayout::past_pose_of(const std::vector<double>& state, std::size_t body,

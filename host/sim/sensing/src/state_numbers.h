@@ -9,8 +9,8 @@ namespace tether::sim {
 
 /// Position, then quaternion as w, x, y, z.
 inline constexpr std::size_t kPoseSize = 7;
-/// The three vectors of a BodyMotion.
-inline constexpr std::size_t kMotionSize = 9;
+/// The four vectors of a BodyMotion.
+inline constexpr std::size_t kMotionSize = 12;
 
 inline uav::Vec3 read_vec3(const double* in) {
   return {in[0], in[1], in[2]};

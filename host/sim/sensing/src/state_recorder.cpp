@@ -29,7 +29,8 @@ void StateRecorder::capture(std::span<const uav::Pose> X_WB, std::span<const Bod
   double* out = state.data();
   for (const uav::Pose& X : X_WB) out = write(X, out);
   for (const BodyMotion& motion : motions) {
-    out = write(motion.alpha_WB_B, write(motion.a_WB_W, write(motion.w_WB_B, out)));
+    for (const uav::Vec3& v : {motion.w_WB_B, motion.a_WB_W, motion.alpha_WB_B, motion.v_WB_W})
+      out = write(v, out);
   }
   const double* const seam = past_.data() + oldest_ * X_WB.size() * kPoseSize;
   const double* const end = past_.data() + past_.size();

@@ -56,18 +56,19 @@ TEST(StateLayoutTest, PosesThenMotionsThenPastPoses) {
   EXPECT_EQ(layout.bodies(), 3U);
   EXPECT_EQ(layout.uavs(), 2U);
   EXPECT_EQ(layout.past_steps(), 2U);
-  EXPECT_EQ(layout.motion_at(1), 21U + 9U);
-  EXPECT_EQ(layout.past_at(), 21U + 18U);
-  EXPECT_EQ(layout.size(), 39U + 2U * 21U);
+  EXPECT_EQ(layout.motion_at(1), 21U + 12U);
+  EXPECT_EQ(layout.past_at(), 21U + 24U);
+  EXPECT_EQ(layout.size(), 45U + 2U * 21U);
   const std::vector<double> state = counted(layout);
   EXPECT_EQ(layout.pose_of(state, 2), (Pose{{14.0, 15.0, 16.0}, {17.0, 18.0, 19.0, 20.0}}));
   const BodyMotion motion = layout.motion_of(state, 1);
-  EXPECT_EQ(motion.w_WB_B, (Vec3{30.0, 31.0, 32.0}));
-  EXPECT_EQ(motion.a_WB_W, (Vec3{33.0, 34.0, 35.0}));
-  EXPECT_EQ(motion.alpha_WB_B, (Vec3{36.0, 37.0, 38.0}));
+  EXPECT_EQ(motion.w_WB_B, (Vec3{33.0, 34.0, 35.0}));
+  EXPECT_EQ(motion.a_WB_W, (Vec3{36.0, 37.0, 38.0}));
+  EXPECT_EQ(motion.alpha_WB_B, (Vec3{39.0, 40.0, 41.0}));
+  EXPECT_EQ(motion.v_WB_W, (Vec3{42.0, 43.0, 44.0}));
   EXPECT_EQ(layout.past_pose_of(state, 1, 0), layout.pose_of(state, 1));
-  EXPECT_EQ(layout.past_pose_of(state, 1, 1).p, (Vec3{67.0, 68.0, 69.0})) << "the newest is last";
-  EXPECT_EQ(layout.past_pose_of(state, 1, 2).p, (Vec3{46.0, 47.0, 48.0}));
+  EXPECT_EQ(layout.past_pose_of(state, 1, 1).p, (Vec3{73.0, 74.0, 75.0})) << "the newest is last";
+  EXPECT_EQ(layout.past_pose_of(state, 1, 2).p, (Vec3{52.0, 53.0, 54.0}));
 }
 
 }  // namespace

@@ -63,10 +63,13 @@ const char* tether_sensor_name(const tether_sensor* sensor) noexcept {
 
 tether_sensor_kind tether_sensor_get_kind(const tether_sensor* sensor) noexcept {
   if (!are_given(sensor)) return -1;
+  // The other kinds of cameras came between the first three kinds and the later ones.
+  constexpr tether_sensor_kind kCameras = TETHER_SEGMENTATION_CAMERA - TETHER_RANGE;
+  const auto kind = static_cast<tether_sensor_kind>(from_c(sensor)->kind());
   const auto of_camera = from_c(sensor)->camera_kind();
-  if (!of_camera || *of_camera == tether::uav::CameraKind::kColor)
-    return static_cast<tether_sensor_kind>(from_c(sensor)->kind());
-  return TETHER_RANGE + static_cast<tether_sensor_kind>(*of_camera);
+  if (of_camera && *of_camera != tether::uav::CameraKind::kColor)
+    return TETHER_RANGE + static_cast<tether_sensor_kind>(*of_camera);
+  return kind > TETHER_RANGE ? kind + kCameras : kind;
 }
 
 double tether_sensor_rate_hz(const tether_sensor* sensor) noexcept {

@@ -53,6 +53,14 @@ template <>
 inline constexpr std::size_t kFirstSize<tether_imu_sample> = 96;
 template <>
 inline constexpr std::size_t kFirstSize<tether_range_sample> = 24;
+template <>
+inline constexpr std::size_t kFirstSize<tether_navsat_sample> = 96;
+template <>
+inline constexpr std::size_t kFirstSize<tether_magnetometer_sample> = 40;
+template <>
+inline constexpr std::size_t kFirstSize<tether_barometer_sample> = 32;
+template <>
+inline constexpr std::size_t kFirstSize<tether_odometry_sample> = 192;
 
 /// Whether `out` can take a T of a caller who knows `size` bytes of it; clears it then.
 template <class T>

@@ -151,6 +151,29 @@ tether_status tether_read_range(tether_vehicle* vehicle, const char* sensor, tet
   return read_struct<tether::uav::RangeSample>(vehicle, sensor, mode, out, size);
 }
 
+tether_status tether_read_navsat(tether_vehicle* vehicle, const char* sensor, tether_read_mode mode,
+                                 tether_navsat_sample* out, size_t size) noexcept {
+  return read_struct<tether::uav::NavSatSample>(vehicle, sensor, mode, out, size);
+}
+
+tether_status tether_read_magnetometer(tether_vehicle* vehicle, const char* sensor,
+                                       tether_read_mode mode, tether_magnetometer_sample* out,
+                                       size_t size) noexcept {
+  return read_struct<tether::uav::MagnetometerSample>(vehicle, sensor, mode, out, size);
+}
+
+tether_status tether_read_barometer(tether_vehicle* vehicle, const char* sensor,
+                                    tether_read_mode mode, tether_barometer_sample* out,
+                                    size_t size) noexcept {
+  return read_struct<tether::uav::BarometerSample>(vehicle, sensor, mode, out, size);
+}
+
+tether_status tether_read_odometry(tether_vehicle* vehicle, const char* sensor,
+                                   tether_read_mode mode, tether_odometry_sample* out,
+                                   size_t size) noexcept {
+  return read_struct<tether::uav::OdometrySample>(vehicle, sensor, mode, out, size);
+}
+
 tether_status tether_read_battery(tether_vehicle* vehicle, tether_battery_sample* out,
                                   size_t size) noexcept {
   if (!can_take(out, size) || !are_given(vehicle)) return TETHER_INVALID;

@@ -26,6 +26,36 @@ inline tether_imu_sample to_c(const uav::ImuSample& sample) {
 inline tether_range_sample to_c(const uav::RangeSample& sample) {
   return {to_ns(sample.sampled_at), sample.index, sample.range_m};
 }
+inline tether_navsat_sample to_c(const uav::NavSatSample& sample) {
+  return {to_ns(sample.sampled_at),
+          sample.index,
+          sample.has_fix ? 1 : 0,
+          0,
+          sample.latitude_deg,
+          sample.longitude_deg,
+          sample.altitude_m,
+          to_c(sample.velocity_ENU_m_s),
+          sample.horizontal_accuracy_m,
+          sample.vertical_accuracy_m,
+          sample.speed_accuracy_m_s};
+}
+inline tether_magnetometer_sample to_c(const uav::MagnetometerSample& sample) {
+  return {to_ns(sample.sampled_at), sample.index, to_c(sample.field_T)};
+}
+inline tether_barometer_sample to_c(const uav::BarometerSample& sample) {
+  return {to_ns(sample.sampled_at), sample.index, sample.pressure_Pa, sample.altitude_m};
+}
+inline tether_odometry_sample to_c(const uav::OdometrySample& sample) {
+  return {to_ns(sample.sampled_at),
+          sample.index,
+          to_c(sample.p_WS),
+          to_c(sample.q_WS),
+          to_c(sample.v_WS_m_s),
+          to_c(sample.w_WS_rad_s),
+          to_c(sample.position_stddev_m),
+          to_c(sample.attitude_stddev_rad),
+          to_c(sample.velocity_stddev_m_s)};
+}
 
 /// `catalogue`: that of the UAV.
 inline tether_battery_sample to_c(const uav::BatterySample& sample,

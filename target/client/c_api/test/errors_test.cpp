@@ -87,6 +87,10 @@ TEST(FirstSize, IsCurrentSize) {
   EXPECT_EQ(kFirstSize<tether_image_info>, sizeof(tether_image_info));
   EXPECT_EQ(kFirstSize<tether_imu_sample>, sizeof(tether_imu_sample));
   EXPECT_EQ(kFirstSize<tether_range_sample>, sizeof(tether_range_sample));
+  EXPECT_EQ(kFirstSize<tether_navsat_sample>, sizeof(tether_navsat_sample));
+  EXPECT_EQ(kFirstSize<tether_magnetometer_sample>, sizeof(tether_magnetometer_sample));
+  EXPECT_EQ(kFirstSize<tether_barometer_sample>, sizeof(tether_barometer_sample));
+  EXPECT_EQ(kFirstSize<tether_odometry_sample>, sizeof(tether_odometry_sample));
 }
 
 }  // namespace

@@ -49,6 +49,28 @@ LIES_AT(tether_range_sample, sampled_at_ns, 0);
 LIES_AT(tether_range_sample, index, 8);
 LIES_AT(tether_range_sample, range_m, 16);
 
+HOLDS(navsat_sample, sizeof(tether_navsat_sample) >= 96);
+LIES_AT(tether_navsat_sample, has_fix, 16);
+LIES_AT(tether_navsat_sample, latitude_deg, 24);
+LIES_AT(tether_navsat_sample, velocity_ENU_m_s, 48);
+LIES_AT(tether_navsat_sample, speed_accuracy_m_s, 88);
+
+HOLDS(magnetometer_sample, sizeof(tether_magnetometer_sample) >= 40);
+LIES_AT(tether_magnetometer_sample, field_T, 16);
+
+HOLDS(barometer_sample, sizeof(tether_barometer_sample) >= 32);
+LIES_AT(tether_barometer_sample, pressure_Pa, 16);
+LIES_AT(tether_barometer_sample, altitude_m, 24);
+
+HOLDS(odometry_sample, sizeof(tether_odometry_sample) >= 192);
+LIES_AT(tether_odometry_sample, p_WS, 16);
+LIES_AT(tether_odometry_sample, q_WS, 40);
+LIES_AT(tether_odometry_sample, v_WS_m_s, 72);
+LIES_AT(tether_odometry_sample, w_WS_rad_s, 96);
+LIES_AT(tether_odometry_sample, position_stddev_m, 120);
+LIES_AT(tether_odometry_sample, attitude_stddev_rad, 144);
+LIES_AT(tether_odometry_sample, velocity_stddev_m_s, 168);
+
 HOLDS(battery_sample, sizeof(tether_battery_sample) >= 40);
 LIES_AT(tether_battery_sample, sampled_at_ns, 0);
 LIES_AT(tether_battery_sample, voltage_v, 8);

@@ -9,6 +9,7 @@
 
 #include <tether/uav/camera_model.h>
 #include <tether/uav/math.h>
+#include <tether/uav/sensors/navigation.h>
 
 /// What a SUT knows of its UAV and the world: the sensors, and the anchors "known in advance with
 /// some useful properties" (paper, Section III). Positions are not included: the SUT measures them.
@@ -21,7 +22,7 @@ inline constexpr std::size_t kMaxCatalogueEntries = 1024;
 /// Most models whose names the properties of a segmentation camera have: its labels are 16 bits.
 inline constexpr std::size_t kMaxModels = 65535;
 
-enum class SensorKind { kCamera, kImu, kRange };
+enum class SensorKind { kCamera, kImu, kRange, kNavSat, kMagnetometer, kBarometer, kOdometry };
 std::string_view name(SensorKind kind);
 
 /// What a camera measures in each pixel.
@@ -53,7 +54,10 @@ struct SensorDescription {
   Pose X_BS;  ///< mounting; a camera's S is body-style (x forward), its optical frame C follows by
               ///< q_body_from_optical()
   double rate_hz = 0.0;  ///< of a periodic sensor; 0 for one that measures on demand
-  std::variant<CameraProperties, ImuProperties, RangeProperties> properties;
+  /// In the order of SensorKind.
+  std::variant<CameraProperties, ImuProperties, RangeProperties, NavSatProperties,
+               MagnetometerProperties, BarometerProperties, OdometryProperties>
+      properties;
 
   SensorKind kind() const { return static_cast<SensorKind>(properties.index()); }
   /// Of a camera; else none.

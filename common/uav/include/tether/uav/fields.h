@@ -126,6 +126,11 @@ void fields(auto& io, Is<RangeProperties> auto& m) {
   limit_fields(io, m);
 }
 
+void fields(auto&, Is<NavSatProperties> auto&) {}
+void fields(auto&, Is<MagnetometerProperties> auto&) {}
+void fields(auto&, Is<BarometerProperties> auto&) {}
+void fields(auto&, Is<OdometryProperties> auto&) {}
+
 void fields(auto& io, Is<SensorDescription> auto& m) {
   io.here([&m] { return "sensor '" + m.name.substr(0, kMaxNameBytes) + "': "; });
   io("name", m.name, wire::AtMost{kMaxNameBytes}, wire::kNotEmpty);
@@ -190,6 +195,44 @@ void fields(auto& io, Is<RangeSample> auto& m) {
   io("sampled_at_st_ns", m.sampled_at);
   io("index", m.index);
   io("range_m", m.range_m, wire::AnyNumber{}, wire::kNoNan);
+}
+void fields(auto& io, Is<NavSatSample> auto& m) {
+  io("sampled_at_st_ns", m.sampled_at);
+  io("index", m.index);
+  io("has_fix", m.has_fix);
+  io("latitude_deg", m.latitude_deg, wire::AnyNumber{});
+  io("longitude_deg", m.longitude_deg, wire::AnyNumber{});
+  io("altitude_m", m.altitude_m, wire::AnyNumber{});
+  io("east_m_s", m.velocity_ENU_m_s.x, wire::AnyNumber{});
+  io("north_m_s", m.velocity_ENU_m_s.y, wire::AnyNumber{});
+  io("up_m_s", m.velocity_ENU_m_s.z, wire::AnyNumber{});
+  io("horizontal_accuracy_m", m.horizontal_accuracy_m, wire::AnyNumber{});
+  io("vertical_accuracy_m", m.vertical_accuracy_m, wire::AnyNumber{});
+  io("speed_accuracy_m_s", m.speed_accuracy_m_s, wire::AnyNumber{});
+  io.require([&m] { return !m.has_fix || std::abs(m.latitude_deg) <= 90.0; }, "latitude_deg",
+             "is not within -90..90");
+}
+void fields(auto& io, Is<MagnetometerSample> auto& m) {
+  io("sampled_at_st_ns", m.sampled_at);
+  io("index", m.index);
+  io("field_t", m.field_T);
+}
+void fields(auto& io, Is<BarometerSample> auto& m) {
+  io("sampled_at_st_ns", m.sampled_at);
+  io("index", m.index);
+  io("pressure_pa", m.pressure_Pa);
+  io("altitude_m", m.altitude_m);
+}
+void fields(auto& io, Is<OdometrySample> auto& m) {
+  io("sampled_at_st_ns", m.sampled_at);
+  io("index", m.index);
+  io("p_ws", m.p_WS);
+  io("q_ws", m.q_WS);
+  io("v_ws_m_s", m.v_WS_m_s);
+  io("w_ws_rad_s", m.w_WS_rad_s);
+  io("position_stddev_m", m.position_stddev_m);
+  io("attitude_stddev_rad", m.attitude_stddev_rad);
+  io("velocity_stddev_m_s", m.velocity_stddev_m_s);
 }
 void fields(auto& io, Is<BatterySample> auto& m) {
   io("sampled_at_st_ns", m.sampled_at);

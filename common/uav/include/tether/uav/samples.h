@@ -68,7 +68,8 @@ struct BatterySample {
 };
 
 /// In the order of SensorKind.
-using Sample = std::variant<CameraSample, ImuSample, RangeSample>;
+using Sample = std::variant<CameraSample, ImuSample, RangeSample, NavSatSample, MagnetometerSample,
+                            BarometerSample, OdometrySample>;
 /// The kind of sensor that measures such samples.
 template <class OneSample>
 constexpr SensorKind kind_of() {

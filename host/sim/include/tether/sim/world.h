@@ -173,11 +173,40 @@ struct RangeModel {
   double dropout_probability = 0.0;  ///< 0..1, of a measurement that reads +inf whatever is there
 };
 
+struct NavSatModel {
+  Noise horizontal_m;  ///< along east and along north
+  Noise vertical_m;
+  Noise horizontal_velocity_m_s;
+  Noise vertical_velocity_m_s;
+  /// Without a fix: one outage begins in each `outage_every_s`, at a random instant, and lasts
+  /// `outage_lasts_s`, which is at most as long. 0: none.
+  double outage_every_s = 0.0;
+  double outage_lasts_s = 0.0;
+};
+struct MagnetometerModel {
+  std::array<Noise, 3> field_T;  ///< x, y, z
+  uav::Vec3 hard_iron_T;         ///< in S: of the UAV itself
+};
+struct BarometerModel {
+  Noise pressure_Pa;
+  std::optional<double> reference_altitude_m{};  ///< of W's origin; none: that of the place
+};
+struct OdometryModel {
+  Noise position_m;  ///< along each of W's axes
+  Noise velocity_m_s;
+  Noise tilt_rad;  ///< about W's x and y
+  Noise yaw_rad;   ///< about W's z
+  Noise angular_velocity_rad_s;
+};
+
 struct Sensor {
   std::string name;
   uav::Pose X_BS;               ///< in the UAV's body frame
   double update_rate_hz = 0.0;  ///< SDF's <update_rate>; 0: none given
-  std::variant<CameraModel, ImuModel, RangeModel> model;
+  /// In the order of uav::SensorKind.
+  std::variant<CameraModel, ImuModel, RangeModel, NavSatModel, MagnetometerModel, BarometerModel,
+               OdometryModel>
+      model;
   FileLocation declared_at{};  ///< in its SDF file; empty: in none
   uav::SensorKind kind() const { return static_cast<uav::SensorKind>(model.index()); }
 };
@@ -201,6 +230,14 @@ struct PlacedAnchor {
   uav::Pose X_WA;  ///< its centre, at ST 0
 };
 
+/// Where W's origin is on Earth.
+struct Place {
+  double latitude_deg = 47.397971;  ///< WGS 84; that of PX4's worlds
+  double longitude_deg = 8.546164;
+  double elevation_m = 488.0;  ///< above the ellipsoid
+  double heading_rad = 0.0;    ///< from W's y to north, counter-clockwise seen from above
+};
+
 struct World {
   std::string name;
   std::filesystem::path file;  ///< its own SDF file, absolute; empty: none
@@ -208,6 +245,8 @@ struct World {
   Duration step = std::chrono::milliseconds(1);
   std::string step_from = "default";  ///< who sets the step: "default", "world" or "scenario"
   FileLocation step_at{};             ///< where; empty: nobody does
+  std::optional<Place> place{};       ///< none: the world does not say; Place's own values are used
+  uav::Vec3 magnetic_field_T{6e-6, 2.3e-5, -4.2e-5};  ///< in W; SDF's
   uav::Vec3 ambient_rgb{0.4, 0.4, 0.4};
   uav::Vec3 background_rgb{0.7, 0.7, 0.7};
   std::vector<Model> models;

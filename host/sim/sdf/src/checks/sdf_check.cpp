@@ -25,7 +25,12 @@ using ElementTable = std::map<std::string, Names, std::less<>>;
 /// The elements of SDF that Tether represents, by parent.
 const ElementTable kElements = {
     {"sdf", {"world", "model"}},
-    {"world", {"physics", "gravity", "scene", "light", "model", "frame"}},
+    {"world",
+     {"physics", "gravity", "scene", "light", "model", "frame", "spherical_coordinates",
+      "magnetic_field"}},
+    {"spherical_coordinates",
+     {"surface_model", "world_frame_orientation", "latitude_deg", "longitude_deg", "elevation",
+      "heading_deg"}},
     {"physics", {"max_step_size"}},
     {"scene", {"ambient", "background", "shadows"}},
     {"model", {"static", "link", "pose", "frame", "model"}},
@@ -56,7 +61,9 @@ const ElementTable kElements = {
       "intensity"}},
     {"attenuation", {"range", "constant", "linear", "quadratic"}},
     {"spot", {"inner_angle", "outer_angle", "falloff"}},
-    {"sensor", {"pose", "update_rate", "camera", "imu", "ray", "lidar"}},
+    {"sensor",
+     {"pose", "update_rate", "camera", "imu", "ray", "lidar", "navsat", "gps", "magnetometer",
+      "air_pressure", "altimeter"}},
     {"camera",
      {"pose", "horizontal_fov", "image", "clip", "noise", "distortion", "lens", "depth_camera"}},
     {"depth_camera", {"clip"}},
@@ -71,14 +78,23 @@ const ElementTable kElements = {
     {"imu", {"angular_velocity", "linear_acceleration"}},
     {"angular_velocity", {"x", "y", "z"}},
     {"linear_acceleration", {"x", "y", "z"}},
+    {"navsat", {"position_sensing", "velocity_sensing"}},
+    {"gps", {"position_sensing", "velocity_sensing"}},
+    {"position_sensing", {"horizontal", "vertical"}},
+    {"velocity_sensing", {"horizontal", "vertical"}},
+    {"magnetometer", {"x", "y", "z"}},
+    {"air_pressure", {"reference_altitude", "pressure"}},
+    {"pressure", {"noise"}},
+    {"altimeter", {"vertical_position"}},
+    {"vertical_position", {"noise"}},
     {"x", {"noise"}},
     {"y", {"noise"}},
     {"z", {"noise"}},
     {"ray", {"scan", "range", "noise"}},
     {"lidar", {"scan", "range", "noise"}},
     {"scan", {"horizontal", "vertical"}},
-    {"horizontal", {"samples", "resolution", "min_angle", "max_angle"}},
-    {"vertical", {"samples", "resolution", "min_angle", "max_angle"}},
+    {"horizontal", {"samples", "resolution", "min_angle", "max_angle", "noise"}},
+    {"vertical", {"samples", "resolution", "min_angle", "max_angle", "noise"}},
     {"range", {"min", "max", "resolution"}},
 };
 
@@ -110,7 +126,12 @@ const Names kSensorTypes = {"camera",
                             "ray",
                             "gpu_ray",
                             "lidar",
-                            "gpu_lidar"};
+                            "gpu_lidar",
+                            "navsat",
+                            "gps",
+                            "magnetometer",
+                            "air_pressure",
+                            "altimeter"};
 
 bool contains(const ElementTable& table, std::string_view parent, std::string_view child) {
   const auto row = table.find(parent);
@@ -253,6 +274,8 @@ class Walk {
     const std::string& name = element->GetName();
     if (contains(kWithoutEffect, parent, name) || is_own_plugin(element)) return false;
     if (name == "inertial" && is_in_static_model(element)) return false;
+    if (purpose_ == SdfPurpose::kUav && parent == "model" && is_odometry_plugin(element))
+      return true;
     if (purpose_ == SdfPurpose::kUav && parent == "model" && is_battery_plugin(element)) {
       warn_of_ignored(source_, element, warn_);
       return true;
@@ -266,12 +289,12 @@ class Walk {
       if (!sdf::Sensor().SetType(attribute(element, "type")))
         refuse(source_, element,
                "is of type '" + attribute(element, "type") + "', which SDF does not have");
-      warn_at(
-          source_, element, Consequence::kMissing,
-          "is of type '" + attribute(element, "type") +
-              "', which is not simulated (camera, depth_camera, rgbd_camera, segmentation_camera, "
-              "imu and ray sensors are); left out",
-          warn_);
+      warn_at(source_, element, Consequence::kMissing,
+              "is of type '" + attribute(element, "type") +
+                  "', which is not simulated (cameras, imu, ray, navsat, magnetometer, "
+                  "air_pressure and "
+                  "altimeter are); left out",
+              warn_);
       return false;
     }
     return true;
@@ -301,6 +324,16 @@ class Walk {
   const WarningSink& warn_;
 };
 
+/// Gazebo Sim names the class of the plugin; of Gazebo 11's, only the file is known.
+bool is_plugin_of(const sdf::ElementPtr& element, std::string_view class_name,
+                  std::string_view file) {
+  const auto has = [&](const char* attribute, std::string_view text) {
+    return element->HasAttribute(attribute) &&
+           element->Get<std::string>(attribute).find(text) != std::string::npos;
+  };
+  return element->GetName() == "plugin" && (has("name", class_name) || has("filename", file));
+}
+
 /// " in model 'm'" of a link and what belongs to it.
 std::string in_model(const sdf::ElementPtr& element) {
   bool is_of_link = false;
@@ -313,14 +346,12 @@ std::string in_model(const sdf::ElementPtr& element) {
 
 }  // namespace
 
-// Gazebo Sim names the class of the plugin; of Gazebo 11's, only the file is known.
 bool is_battery_plugin(const sdf::ElementPtr& element) {
-  if (element->GetName() != "plugin") return false;
-  const auto has = [&](const char* attribute, std::string_view text) {
-    return element->HasAttribute(attribute) &&
-           element->Get<std::string>(attribute).find(text) != std::string::npos;
-  };
-  return has("name", "LinearBatteryPlugin") || has("filename", "LinearBatteryPlugin");
+  return is_plugin_of(element, "LinearBatteryPlugin", "LinearBatteryPlugin");
+}
+
+bool is_odometry_plugin(const sdf::ElementPtr& element) {
+  return is_plugin_of(element, "OdometryPublisher", "odometry-publisher");
 }
 
 void warn_at(const SdfSource& source, const sdf::ElementPtr& element, const Effect& effect,

@@ -14,6 +14,8 @@ void check_elements(const SdfSource& source, SdfPurpose purpose, const WarningSi
 
 /// A plugin of Gazebo's LinearBatteryPlugin, of Gazebo Sim or Gazebo 11.
 bool is_battery_plugin(const sdf::ElementPtr& element);
+/// Whether it publishes an odometry.
+bool is_odometry_plugin(const sdf::ElementPtr& element);
 
 /// Warns about an element: its place, and `describe(element)` as the subject.
 void warn_at(const SdfSource& source, const sdf::ElementPtr& element, const Effect& effect,

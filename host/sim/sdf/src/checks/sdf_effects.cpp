@@ -60,6 +60,7 @@ const Effects kEffectOfParent = {
     {"collision", Consequence::kBehavesDifferent},
     {"friction", cannot_change(Consequence::kBehavesDifferent)},
     {"imu", Consequence::kBehavesDifferent},
+    {"altimeter", Consequence::kBehavesDifferent},
     {"inertial", Consequence::kBehavesDifferent},
     {"noise", Consequence::kBehavesDifferent},
     {"ode", cannot_change(Consequence::kBehavesDifferent)},

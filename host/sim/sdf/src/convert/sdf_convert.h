@@ -45,6 +45,9 @@ Light read_light(const SdfSource& source, const sdf::Light& light, const uav::Po
 std::optional<Sensor> read_sensor(const SdfSource& source, const sdf::Sensor& sensor,
                                   const uav::Pose& X_BL, const WarningSink& warn);
 
+/// Adds the sensor that the model's odometry plugin stands for, if it has one.
+void add_odometry(const SdfSource& source, const sdf::ElementPtr& model, Uav& uav);
+
 /// Airframe of a UAV: <tether:multirotor>, with mass and inertia of the body.
 uav::MultirotorParameters read_airframe(const SdfSource& source, const sdf::ElementPtr& model,
                                         const Link& body, double gravity_m_s2);

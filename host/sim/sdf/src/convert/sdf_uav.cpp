@@ -118,6 +118,7 @@ Uav read_uav(const SdfSource& source, double gravity_m_s2, const WarningSink& wa
   uav.battery = read_battery(source, model->Element());
   add_sensors(source, body, {}, warn, uav);
   add_fixed_links(source, *model, body, warn, uav);
+  add_odometry(source, model->Element(), uav);
   warn_of_moving_joints(source, *model, warn);
   check_sensor_names(source, model->Element(), uav);
   return uav;

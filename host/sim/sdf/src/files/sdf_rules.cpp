@@ -61,6 +61,8 @@ const ValueRule kImageEdge{[](double v) { return v >= 1.0 && v <= 4096.0; },
                            "it must be at least 1 and at most 4096 pixels", "pixels"};
 const ValueRule kPose{is_coordinate, "it must be within 100000 m of its frame's origin",
                       "metres and radians", 3};
+const ValueRule kLatitude{[](double v) { return std::abs(v) <= 90.0; },
+                          "it must be between -90 and 90", "degrees"};
 const ValueRule kPosition{is_coordinate, "it must be within 100000 m of its frame's origin",
                           "metres"};
 
@@ -119,6 +121,8 @@ const std::map<std::string, ValueRule, std::less<>> kRules = {
     {"range/min", kDistance},
     {"range/max", kLength},
     {"range/resolution", kDistance},
+    {"spherical_coordinates/latitude_deg", kLatitude},
+    {"air_pressure/reference_altitude", kPosition},
     {"rotor/position_m", kPosition},
     {"horizontal/samples", kPositive},
     {"vertical/samples", kPositive},

@@ -6,7 +6,8 @@
 namespace tether::sim {
 namespace {
 
-constexpr std::array kReaders = {read_camera, read_imu, read_range};
+constexpr std::array kReaders = {read_camera, read_imu,          read_range,
+                                 read_navsat, read_magnetometer, read_barometer};
 
 }  // namespace
 

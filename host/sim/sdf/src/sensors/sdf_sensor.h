@@ -20,6 +20,9 @@ struct SensorReading {
 bool read_camera(const SensorReading& reading);
 bool read_imu(const SensorReading& reading);
 bool read_range(const SensorReading& reading);
+bool read_navsat(const SensorReading& reading);
+bool read_magnetometer(const SensorReading& reading);
+bool read_barometer(const SensorReading& reading);
 
 /// A channel's noise. Warns of quantization.
 Noise read_noise(const SdfSource& source, const sdf::Noise& noise, const WarningSink& warn);

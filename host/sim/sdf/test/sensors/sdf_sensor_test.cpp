@@ -231,8 +231,8 @@ TEST_F(SdfSensor, RefusesImuNoiseWithoutAType) {
 
 TEST_F(SdfSensor, LeavesOutOtherSensorsWithAWarning) {
   const std::string model =
-      with(kUav, "</link>", "<sensor name='compass' type='magnetometer'/>\n</link>");
-  EXPECT_THAT(warnings(model), ElementsAre(HasSubstr("sensor 'compass'")));
+      with(kUav, "</link>", "<sensor name='bumper' type='contact'/>\n</link>");
+  EXPECT_THAT(warnings(model), ElementsAre(HasSubstr("sensor 'bumper'")));
   EXPECT_EQ(read(model).sensors.size(), 2u);
 }
 

@@ -184,9 +184,13 @@ enum {
   TETHER_IMU = 1,     ///< inertial measurement unit
   TETHER_RANGE = 2,   ///< rangefinder
   // Read by tether_read_camera().
-  TETHER_DEPTH_CAMERA = 3,        ///< camera that measures a depth in each pixel
-  TETHER_RGBD_CAMERA = 4,         ///< camera that measures colour and depth in each pixel
-  TETHER_SEGMENTATION_CAMERA = 5  ///< camera that finds which model each pixel shows
+  TETHER_DEPTH_CAMERA = 3,         ///< camera that measures a depth in each pixel
+  TETHER_RGBD_CAMERA = 4,          ///< camera that measures colour and depth in each pixel
+  TETHER_SEGMENTATION_CAMERA = 5,  ///< camera that finds which model each pixel shows
+  TETHER_NAVSAT = 6,               ///< receiver of satellite navigation
+  TETHER_MAGNETOMETER = 7,         ///< magnetometer
+  TETHER_BAROMETER = 8,            ///< barometer
+  TETHER_ODOMETRY = 9              ///< estimate of pose and velocity
 };
 
 /// Shape of an anchor: TETHER_BOX, TETHER_CYLINDER, TETHER_SPHERE.
@@ -391,6 +395,68 @@ typedef struct tether_range_sample {
 /// Reads a rangefinder. @copydetails tether_read_imu
 tether_status tether_read_range(tether_vehicle* vehicle, const char* sensor, tether_read_mode mode,
                                 tether_range_sample* out, size_t size) TETHER_NOEXCEPT;
+
+/// One measurement of a receiver of satellite navigation. May grow.
+typedef struct tether_navsat_sample {
+  int64_t sampled_at_ns;         ///< ST [ns]
+  uint64_t index;                ///< number of the measurement of this sensor
+  int32_t has_fix;               ///< 1, or 0: all numbers below are NaN
+  int32_t reserved;              ///< 0
+  double latitude_deg;           ///< WGS 84
+  double longitude_deg;          ///< east of Greenwich
+  double altitude_m;             ///< above the ellipsoid
+  tether_vec3 velocity_ENU_m_s;  ///< east, north, up
+  double horizontal_accuracy_m;  ///< standard deviation along each axis
+  double vertical_accuracy_m;    ///< standard deviation
+  double speed_accuracy_m_s;     ///< standard deviation along each horizontal axis
+} tether_navsat_sample;
+
+/// Reads a receiver of satellite navigation. @copydetails tether_read_imu
+tether_status tether_read_navsat(tether_vehicle* vehicle, const char* sensor, tether_read_mode mode,
+                                 tether_navsat_sample* out, size_t size) TETHER_NOEXCEPT;
+
+/// One measurement of a magnetometer. May grow.
+typedef struct tether_magnetometer_sample {
+  int64_t sampled_at_ns;  ///< ST [ns]
+  uint64_t index;         ///< number of the measurement of this sensor
+  tether_vec3 field_T;    ///< magnetic flux density in S [T]
+} tether_magnetometer_sample;
+
+/// Reads a magnetometer. @copydetails tether_read_imu
+tether_status tether_read_magnetometer(tether_vehicle* vehicle, const char* sensor,
+                                       tether_read_mode mode, tether_magnetometer_sample* out,
+                                       size_t size) TETHER_NOEXCEPT;
+
+/// One measurement of a barometer. May grow.
+typedef struct tether_barometer_sample {
+  int64_t sampled_at_ns;  ///< ST [ns]
+  uint64_t index;         ///< number of the measurement of this sensor
+  double pressure_Pa;     ///< static pressure
+  double altitude_m;      ///< of that pressure in the standard atmosphere (ISO 2533)
+} tether_barometer_sample;
+
+/// Reads a barometer. @copydetails tether_read_imu
+tether_status tether_read_barometer(tether_vehicle* vehicle, const char* sensor,
+                                    tether_read_mode mode, tether_barometer_sample* out,
+                                    size_t size) TETHER_NOEXCEPT;
+
+/// One estimate of pose and velocity, of the sensor's frame S in W. Not the truth. May grow.
+typedef struct tether_odometry_sample {
+  int64_t sampled_at_ns;            ///< ST [ns]
+  uint64_t index;                   ///< number of the measurement of this sensor
+  tether_vec3 p_WS;                 ///< position [m]
+  tether_quat q_WS;                 ///< attitude
+  tether_vec3 v_WS_m_s;             ///< velocity in W
+  tether_vec3 w_WS_rad_s;           ///< angular velocity in S
+  tether_vec3 position_stddev_m;    ///< along W's axes
+  tether_vec3 attitude_stddev_rad;  ///< about W's axes
+  tether_vec3 velocity_stddev_m_s;  ///< along W's axes
+} tether_odometry_sample;
+
+/// Reads an estimate of pose and velocity. @copydetails tether_read_imu
+tether_status tether_read_odometry(tether_vehicle* vehicle, const char* sensor,
+                                   tether_read_mode mode, tether_odometry_sample* out,
+                                   size_t size) TETHER_NOEXCEPT;
 
 /// @}
 /// @defgroup c_subscribing Subscriptions

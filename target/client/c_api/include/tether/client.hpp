@@ -223,6 +223,27 @@ class Vehicle {
   Result<RangeSample> read_range(const char* sensor, Read read = Read::kNext) noexcept {
     return read_struct<RangeSample>(tether_read_range, sensor, read);
   }
+  /// Reads a receiver of satellite navigation.
+  /// @param sensor  its name  @param read  which measurement  @return as tether_read_navsat()
+  Result<NavSatSample> read_navsat(const char* sensor, Read read = Read::kNext) noexcept {
+    return read_struct<NavSatSample>(tether_read_navsat, sensor, read);
+  }
+  /// Reads a magnetometer.
+  /// @param sensor  its name  @param read  which measurement  @return as tether_read_magnetometer()
+  Result<MagnetometerSample> read_magnetometer(const char* sensor,
+                                               Read read = Read::kNext) noexcept {
+    return read_struct<MagnetometerSample>(tether_read_magnetometer, sensor, read);
+  }
+  /// Reads a barometer.
+  /// @param sensor  its name  @param read  which measurement  @return as tether_read_barometer()
+  Result<BarometerSample> read_barometer(const char* sensor, Read read = Read::kNext) noexcept {
+    return read_struct<BarometerSample>(tether_read_barometer, sensor, read);
+  }
+  /// Reads an estimate of pose and velocity.
+  /// @param sensor  its name  @param read  which measurement  @return as tether_read_odometry()
+  Result<OdometrySample> read_odometry(const char* sensor, Read read = Read::kNext) noexcept {
+    return read_struct<OdometrySample>(tether_read_odometry, sensor, read);
+  }
   /// Reads the battery. @return as tether_read_battery()
   Result<BatterySample> read_battery() noexcept {
     BatterySample sample{};

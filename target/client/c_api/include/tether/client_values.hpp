@@ -153,6 +153,10 @@ enum class SensorKind : std::int32_t {
   kDepthCamera = TETHER_DEPTH_CAMERA,                ///< measures a depth in each pixel
   kRgbdCamera = TETHER_RGBD_CAMERA,                  ///< measures colour and depth in each pixel
   kSegmentationCamera = TETHER_SEGMENTATION_CAMERA,  ///< finds which model each pixel shows
+  kNavSat = TETHER_NAVSAT,                           ///< receiver of satellite navigation
+  kMagnetometer = TETHER_MAGNETOMETER,               ///< magnetometer
+  kBarometer = TETHER_BAROMETER,                     ///< barometer
+  kOdometry = TETHER_ODOMETRY,                       ///< estimate of pose and velocity
 };
 /// Shape of an anchor.
 enum class AnchorShape : std::int32_t {
@@ -307,21 +311,20 @@ inline Result<Image> ImageView::copy() const noexcept {
   return Image(image);
 }
 
-using ImageInfo = tether_image_info;          ///< description of an image
-using ImuSample = tether_imu_sample;          ///< measurement of an IMU
-using RangeSample = tether_range_sample;      ///< measurement of a rangefinder
-using BatterySample = tether_battery_sample;  ///< the battery at one instant
+using ImageInfo = tether_image_info;                    ///< description of an image
+using ImuSample = tether_imu_sample;                    ///< measurement of an IMU
+using RangeSample = tether_range_sample;                ///< measurement of a rangefinder
+using BatterySample = tether_battery_sample;            ///< the battery at one instant
+using NavSatSample = tether_navsat_sample;              ///< measurement of a receiver
+using MagnetometerSample = tether_magnetometer_sample;  ///< measurement of a magnetometer
+using BarometerSample = tether_barometer_sample;        ///< measurement of a barometer
+using OdometrySample = tether_odometry_sample;          ///< estimate of pose and velocity
 
-/// When a measurement was taken. @param sample  the measurement  @return ST
-inline SimTime sampled_at(const ImuSample& sample) noexcept {
-  return SimTime(Duration(sample.sampled_at_ns));
-}
-/// When the battery was read. @param sample  the battery  @return ST
-inline SimTime sampled_at(const BatterySample& sample) noexcept {
-  return SimTime(Duration(sample.sampled_at_ns));
-}
-/// When a measurement was taken. @param sample  the measurement  @return ST
-inline SimTime sampled_at(const RangeSample& sample) noexcept {
+/// When a measurement was taken, or the battery was read.
+/// @param sample  the measurement  @return ST
+template <class Sample>
+inline auto sampled_at(const Sample& sample) noexcept
+    -> decltype(SimTime(Duration(sample.sampled_at_ns))) {
   return SimTime(Duration(sample.sampled_at_ns));
 }
 

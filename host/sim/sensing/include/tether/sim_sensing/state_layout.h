@@ -8,11 +8,12 @@
 
 namespace tether::sim {
 
-/// The motion of a UAV's body origin over the last step, constant within it, for its IMU.
+/// The motion of a UAV's body origin over the last step, for its sensors.
 struct BodyMotion {
   uav::Vec3 w_WB_B;      ///< angular velocity now [rad/s]
   uav::Vec3 a_WB_W;      ///< acceleration of B's origin over the last step [m/s²]
   uav::Vec3 alpha_WB_B;  ///< angular acceleration over the last step [rad/s²]
+  uav::Vec3 v_WB_W{};    ///< velocity of B's origin now [m/s]
 };
 
 /// How many steps the shutter of any camera reaches back: that many past poses of each moving body
@@ -24,7 +25,7 @@ std::size_t shutter_steps(const CameraModel& camera, Duration step);
 
 /// The layout of `Snapshot::state` of every back end whose sensors are made by the sensing library:
 /// position and quaternion of each of `moving_bodies` (7 numbers each), then the BodyMotion of each
-/// UAV (9 numbers each), then the positions and quaternions again at each of the `shutter_steps`
+/// UAV (12 numbers each), then the positions and quaternions again at each of the `shutter_steps`
 /// past steps, oldest first.
 ///
 /// Reads such states, as StateRecorder captures them. A value; safe from any thread.
