@@ -2,6 +2,7 @@
 #include "scene.h"
 
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <ctime>
@@ -88,6 +89,60 @@ class Instructions {
     hwy::GetChosenTarget().DeInit();
   }
 };
+
+// Scans of a 2D lidar along a flight down the corridor; the yardstick is the engine's rays alone.
+World corridor_with_lidar() {
+  World world = corridor();
+  ScanModel scan{{.columns = 1080,
+                  .rows = 1,
+                  .min_azimuth_rad = -2.356,
+                  .max_azimuth_rad = 2.356,
+                  .min_m = 0.1,
+                  .max_m = 30.0},
+                 0.0,
+                 {}};
+  scan.noise.stddev = 0.01;
+  world.uavs[0].sensors.push_back({"lidar", {}, 40.0, scan});
+  return world;
+}
+
+void BM_scans_1080(benchmark::State& state) {
+  const World world = corridor_with_lidar();
+  const std::size_t lidar = world.uavs[0].sensors.size() - 1;
+  const auto simulator = make_mujoco_simulator(world, print_warning);
+  simulator->apply(0, {{0.5, 0.0, 0.0}, 0.1});
+  Snapshot snapshot;
+  std::uint64_t index = 0;
+  for (auto _ : state) {
+    state.PauseTiming();
+    if (simulator->now() > SimTime(10s)) simulator->reset(1);
+    simulator->advance_to(simulator->now() + 25ms);
+    simulator->capture(snapshot);
+    state.ResumeTiming();
+    benchmark::DoNotOptimize(simulator->measure(snapshot, 0, lidar, index++));
+  }
+  count_items(state, "scans", 1.0);
+}
+BENCHMARK(BM_scans_1080);
+
+void BM_rays_engine_alone_1080(benchmark::State& state) {
+  const World world = corridor();
+  const ModelPtr model = make_physics_model(world, print_warning);
+  const DataPtr data = make_data(*model);
+  mj_kinematics(model.get(), data.get());
+  const mjtNum origin[3] = {0.0, 0.0, 1.2};
+  for (auto _ : state) {
+    for (int i = 0; i < 1080; ++i) {
+      const double azimuth_rad = 0.00436 * (i - 540);
+      const mjtNum direction[3] = {std::cos(azimuth_rad), std::sin(azimuth_rad), 0.0};
+      int geom = -1;
+      benchmark::DoNotOptimize(
+          mj_ray(model.get(), data.get(), origin, direction, nullptr, 1, 1, &geom));
+    }
+  }
+  count_items(state, "scans", 1.0);
+}
+BENCHMARK(BM_rays_engine_alone_1080);
 
 // Images along a flight down the corridor, noise and all. `targets`: the processor's instructions
 // that may be used; 0: all. `helpers`: threads that help to draw.

@@ -141,6 +141,23 @@ TEST_F(Layered, EveryKeyOfAnOdometryArrives) {
       ElementsAre(1.0, 2.0, 3.0, 4.0, 5.0));
 }
 
+TEST_F(Layered, EveryKeyOfALidarArrives) {
+  sim::Sensor lidar{"lidar", {}, 10.0, sim::ScanModel{}};
+  lay(lidar, {layer("scan",
+                    "rays = [1080, 16]\nsweep_ms = 100\nmin_m = 0.5\nmax_m = 30\n"
+                    "resolution_m = 0.01\ndropout_probability = 0.25\n"
+                    "noise_m = { stddev = 0.02 }\n")});
+  const auto& model = std::get<sim::ScanModel>(lidar.model);
+  EXPECT_EQ(model.rays.columns, 1080);
+  EXPECT_EQ(model.rays.rows, 16);
+  EXPECT_THAT((std::vector{model.rays.sweep_s, model.rays.min_m, model.rays.max_m,
+                           model.resolution_m, model.dropout_probability, model.noise.stddev}),
+              ElementsAre(0.1, 0.5, 30.0, 0.01, 0.25, 0.02));
+  expect_refusal(4, "lidar", [&] { lay(lidar, {layer("scan", "sweep_ms = 101\n")}); });
+  expect_refusal(4, "rays", [&] { lay(lidar, {layer("scan", "rays = [2049, 128]\n")}); });
+  expect_refusal(4, "rays", [&] { lay(lidar, {layer("scan", "rays = [9]\n")}); });
+}
+
 // The SDF's camera sees up to 100 m.
 TEST_F(Layered, LimitsOfDepthsArriveAndTheCameraSeesAsFar) {
   for (const auto kind : {uav::CameraKind::kDepth, uav::CameraKind::kRgbd}) {

@@ -30,6 +30,10 @@ uav::OdometryProperties describe(const World&, const OdometryModel&) {
   return {};
 }
 
+uav::ScanProperties describe(const World&, const ScanModel& scan) {
+  return scan.rays;
+}
+
 uav::SensorDescription describe_sensor(const World& world, const Sensor& sensor) {
   using Properties = decltype(uav::SensorDescription::properties);
   return {sensor.name, sensor.X_BS, sensor.update_rate_hz,

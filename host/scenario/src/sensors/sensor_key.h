@@ -94,12 +94,14 @@ std::vector<SensorKey> keys_of(std::type_identity<sim::NavSatModel>);
 std::vector<SensorKey> keys_of(std::type_identity<sim::MagnetometerModel>);
 std::vector<SensorKey> keys_of(std::type_identity<sim::BarometerModel>);
 std::vector<SensorKey> keys_of(std::type_identity<sim::OdometryModel>);
+std::vector<SensorKey> keys_of(std::type_identity<sim::ScanModel>);
 
 /// Sets what follows from other values, and checks what the values are together.
 /// @throws Error(kBadFile)
 void complete(sim::CameraModel& camera, const Finished& sensor);
 void complete(sim::RangeModel& range, const Finished& sensor);
 void complete(sim::NavSatModel& navsat, const Finished& sensor);
+void complete(sim::ScanModel& scan, const Finished& sensor);
 /// Of a kind whose values can have any combination.
 void complete(auto&, const Finished&) {}
 

@@ -25,11 +25,15 @@ void RemoteRays::cast(const RayBundle& bundle, std::span<double> distances_m) {
   request.X_WB.assign(bundle.X_WB.begin(), bundle.X_WB.end());
   request.carrier = index(bundle.ignored);
   request.X_WS = bundle.X_WS;
-  request.rays_S.assign(bundle.rays_S.begin(), bundle.rays_S.end());
   request.max_m = std::min(bundle.max_m, kFarthestRay_m);
-  const auto answer = session_.ask<protocol::Distances>(request);
-  assert(answer.distance_m.size() == distances_m.size());
-  std::copy(answer.distance_m.begin(), answer.distance_m.end(), distances_m.begin());
+  for (std::size_t from = 0; from < bundle.rays_S.size(); from += protocol::kMaxRays) {
+    const auto rays_S =
+        bundle.rays_S.subspan(from, std::min(protocol::kMaxRays, bundle.rays_S.size() - from));
+    request.rays_S.assign(rays_S.begin(), rays_S.end());
+    const auto answer = session_.ask<protocol::Distances>(request);
+    assert(answer.distance_m.size() == rays_S.size());
+    std::ranges::copy(answer.distance_m, distances_m.subspan(from).begin());
+  }
 }
 
 void RemoteRenderer::render(const View& view, std::span<std::uint8_t> rgb) {

@@ -3,7 +3,9 @@
 #include "sensors/imu.h"
 #include "sensors/navigation.h"
 #include "sensors/range.h"
+#include "sensors/scan.h"
 
+#include <span>
 #include <string>
 #include <utility>
 #include <variant>
@@ -56,6 +58,10 @@ uav::Sample SensorSuite::measure(const Snapshot& snapshot, std::size_t uav, std:
               [&](const RangeModel& range) -> uav::Sample {
                 cast(range, snapshot.state, uav, mounted.X_BS);
                 return measure_range(range, distances_m_, key);
+              },
+              [&](const ScanModel& scan) -> uav::Sample {
+                cast(scan, snapshot.state, uav, mounted);
+                return measure_scan(scan, distances_m_, key);
               },
               [&](const CameraModel&) { return picture(snapshot, uav, sensor, index); },
               [&](const NavSatModel& navsat) -> uav::Sample {
@@ -144,6 +150,27 @@ int SensorSuite::walls_between(const Snapshot& snapshot, std::size_t uav, std::s
 
 std::string SensorSuite::renderer_name() const {
   return images_.back()->renderer_name();
+}
+
+// Columns that are measured at the same step are cast together, with the poses of that step.
+void SensorSuite::cast(const ScanModel& scan, const std::vector<double>& state, std::size_t uav,
+                       const Sensor& mounted) {
+  const auto [known, is_new] = rays_S_.try_emplace(&mounted);
+  if (is_new) known->second = rays_of(scan);
+  const std::span<const uav::Vec3> rays_S = known->second;
+  distances_m_.resize(rays_S.size());
+  const std::span<double> distances_m = distances_m_;
+  const auto rows = static_cast<std::size_t>(scan.rays.rows);
+  for (int first = 0, end = 0; first < scan.rays.columns; first = end) {
+    const std::size_t steps = steps_ago(scan, first, world_.step);
+    while (end < scan.rays.columns && steps_ago(scan, end, world_.step) == steps) ++end;
+    for (std::size_t i = 0; i < X_WB_.size(); ++i) X_WB_[i] = layout_.past_pose_of(state, i, steps);
+    const std::size_t from = static_cast<std::size_t>(first) * rows;
+    const std::size_t count = static_cast<std::size_t>(end - first) * rows;
+    rays_.cast(
+        {X_WB_[uav] * mounted.X_BS, rays_S.subspan(from, count), X_WB_, uav, farthest_read_m(scan)},
+        distances_m.subspan(from, count));
+  }
 }
 
 void SensorSuite::cast(const RangeModel& range, const std::vector<double>& state, std::size_t uav,

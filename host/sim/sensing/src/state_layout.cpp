@@ -1,3 +1,4 @@
+#include "sensors/scan.h"
 #include "state_numbers.h"
 
 #include <algorithm>
@@ -33,6 +34,8 @@ std::size_t shutter_steps(const World& world) {
   std::size_t most = 0;
   for (const Uav& uav : world.uavs) {
     for (const Sensor& sensor : uav.sensors) {
+      if (const auto* scan = std::get_if<ScanModel>(&sensor.model))
+        most = std::max(most, steps_ago(*scan, 0, world.step));
       const auto* camera = std::get_if<CameraModel>(&sensor.model);
       if (!camera) continue;
       check_shutter(uav, sensor, *camera);

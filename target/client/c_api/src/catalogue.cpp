@@ -111,6 +111,19 @@ tether_status tether_sensor_range_limits(const tether_sensor* sensor, double* mi
   return fail(TETHER_INVALID, "the sensor measures no distances");
 }
 
+tether_status tether_sensor_scan_model(const tether_sensor* sensor, tether_scan_model* out,
+                                       size_t size) noexcept {
+  if (!tether::c_api::can_take(out, size) || !are_given(sensor)) return TETHER_INVALID;
+  const auto* scan = std::get_if<tether::uav::ScanProperties>(&from_c(sensor)->properties);
+  if (scan == nullptr) return fail(TETHER_INVALID, "the sensor is not a lidar");
+  tether::c_api::put(
+      tether_scan_model{scan->columns, scan->rows, scan->min_azimuth_rad, scan->max_azimuth_rad,
+                        scan->min_elevation_rad, scan->max_elevation_rad, scan->min_m, scan->max_m,
+                        scan->sweep_s},
+      out, size);
+  return TETHER_OK;
+}
+
 const char* tether_sensor_label_model(const tether_sensor* sensor, uint16_t label) noexcept {
   if (!are_given(sensor)) return nullptr;
   const auto* camera = std::get_if<CameraProperties>(&from_c(sensor)->properties);

@@ -61,6 +61,10 @@ template <>
 inline constexpr std::size_t kFirstSize<tether_barometer_sample> = 32;
 template <>
 inline constexpr std::size_t kFirstSize<tether_odometry_sample> = 192;
+template <>
+inline constexpr std::size_t kFirstSize<tether_scan_model> = 64;
+template <>
+inline constexpr std::size_t kFirstSize<tether_scan_info> = 24;
 
 /// Whether `out` can take a T of a caller who knows `size` bytes of it; clears it then.
 template <class T>

@@ -2,6 +2,7 @@
 #include "handles.h"
 #include "samples.h"
 
+#include <algorithm>
 #include <cstring>
 #include <new>
 #include <string>
@@ -68,6 +69,15 @@ tether_status check_capacity(const tether_vehicle& vehicle, const char* sensor,
     return fail(TETHER_INVALID, "an image of '" + found->name + "' has " + std::to_string(needed) +
                                     " bytes; the buffer has " + std::to_string(capacity));
   });
+}
+
+/// Whether a scan of that lidar fits. A sensor that is none is told by the read.
+bool fits_scan(const tether_vehicle& vehicle, const char* sensor, std::size_t capacity) {
+  const auto* found = vehicle.vehicle->catalogue().find_sensor(sensor);
+  const auto* scan =
+      found == nullptr ? nullptr : std::get_if<uav::ScanProperties>(&found->properties);
+  return scan == nullptr ||
+         static_cast<std::size_t>(scan->columns) * static_cast<std::size_t>(scan->rows) <= capacity;
 }
 
 template <class T>
@@ -172,6 +182,24 @@ tether_status tether_read_odometry(tether_vehicle* vehicle, const char* sensor,
                                    tether_read_mode mode, tether_odometry_sample* out,
                                    size_t size) noexcept {
   return read_struct<tether::uav::OdometrySample>(vehicle, sensor, mode, out, size);
+}
+
+tether_status tether_read_scan(tether_vehicle* vehicle, const char* sensor, tether_read_mode mode,
+                               float* ranges_m, size_t capacity, tether_scan_info* info,
+                               size_t info_size) noexcept {
+  if (info != nullptr && !can_take(info, info_size)) return TETHER_INVALID;
+  if (!are_given(vehicle, sensor, ranges_m)) return TETHER_INVALID;
+  if (!fits_scan(*vehicle, sensor, capacity))
+    return fail(TETHER_INVALID, "a scan of this lidar has more rays than the buffer has room for");
+  return read<tether::uav::ScanSample>(vehicle, sensor, mode, [&](const auto& sample) {
+    if (sample.ranges_m.size() > capacity)
+      return fail(TETHER_PROTOCOL, "the scan is larger than the lidar's");
+    std::copy(sample.ranges_m.begin(), sample.ranges_m.end(), ranges_m);
+    if (info != nullptr)
+      put(tether_scan_info{tether::to_ns(sample.sampled_at), sample.index, sample.ranges_m.size()},
+          info, info_size);
+    return tether_status{TETHER_OK};
+  });
 }
 
 tether_status tether_read_battery(tether_vehicle* vehicle, tether_battery_sample* out,

@@ -10,6 +10,7 @@
 #include <tether/uav/camera_model.h>
 #include <tether/uav/math.h>
 #include <tether/uav/sensors/navigation.h>
+#include <tether/uav/sensors/scan.h>
 
 /// What a SUT knows of its UAV and the world: the sensors, and the anchors "known in advance with
 /// some useful properties" (paper, Section III). Positions are not included: the SUT measures them.
@@ -22,7 +23,16 @@ inline constexpr std::size_t kMaxCatalogueEntries = 1024;
 /// Most models whose names the properties of a segmentation camera have: its labels are 16 bits.
 inline constexpr std::size_t kMaxModels = 65535;
 
-enum class SensorKind { kCamera, kImu, kRange, kNavSat, kMagnetometer, kBarometer, kOdometry };
+enum class SensorKind {
+  kCamera,
+  kImu,
+  kRange,
+  kNavSat,
+  kMagnetometer,
+  kBarometer,
+  kOdometry,
+  kScan
+};
 std::string_view name(SensorKind kind);
 
 /// What a camera measures in each pixel.
@@ -56,7 +66,7 @@ struct SensorDescription {
   double rate_hz = 0.0;  ///< of a periodic sensor; 0 for one that measures on demand
   /// In the order of SensorKind.
   std::variant<CameraProperties, ImuProperties, RangeProperties, NavSatProperties,
-               MagnetometerProperties, BarometerProperties, OdometryProperties>
+               MagnetometerProperties, BarometerProperties, OdometryProperties, ScanProperties>
       properties;
 
   SensorKind kind() const { return static_cast<SensorKind>(properties.index()); }

@@ -130,6 +130,22 @@ void fields(auto&, Is<NavSatProperties> auto&) {}
 void fields(auto&, Is<MagnetometerProperties> auto&) {}
 void fields(auto&, Is<BarometerProperties> auto&) {}
 void fields(auto&, Is<OdometryProperties> auto&) {}
+void fields(auto& io, Is<ScanProperties> auto& m) {
+  io("columns", m.columns);
+  io("rows", m.rows);
+  io("min_azimuth_rad", m.min_azimuth_rad);
+  io("max_azimuth_rad", m.max_azimuth_rad);
+  io("min_elevation_rad", m.min_elevation_rad);
+  io("max_elevation_rad", m.max_elevation_rad);
+  limit_fields(io, m);
+  io("sweep_s", m.sweep_s, wire::kNotNegative);
+  io.require(
+      [&m] {
+        return m.columns > 0 && m.rows > 0 &&
+               std::int64_t{m.columns} * m.rows <= std::int64_t{kMaxScanRays};
+      },
+      "columns x rows", "is not within 1..262144");
+}
 
 void fields(auto& io, Is<SensorDescription> auto& m) {
   io.here([&m] { return "sensor '" + m.name.substr(0, kMaxNameBytes) + "': "; });
@@ -233,6 +249,11 @@ void fields(auto& io, Is<OdometrySample> auto& m) {
   io("position_stddev_m", m.position_stddev_m);
   io("attitude_stddev_rad", m.attitude_stddev_rad);
   io("velocity_stddev_m_s", m.velocity_stddev_m_s);
+}
+void fields(auto& io, Is<ScanSample> auto& m) {
+  io("sampled_at_st_ns", m.sampled_at);
+  io("index", m.index);
+  io("ranges_m", m.ranges_m, wire::AtMost{kMaxScanRays, "has too many rays"});
 }
 void fields(auto& io, Is<BatterySample> auto& m) {
   io("sampled_at_st_ns", m.sampled_at);

@@ -199,13 +199,21 @@ struct OdometryModel {
   Noise angular_velocity_rad_s;
 };
 
+/// A lidar: rays as in uav::ScanProperties.
+struct ScanModel {
+  uav::ScanProperties rays;
+  double resolution_m = 0.0;         ///< 0: continuous
+  Noise noise;                       ///< of distances [m]
+  double dropout_probability = 0.0;  ///< of a ray, which then reads +inf
+};
+
 struct Sensor {
   std::string name;
   uav::Pose X_BS;               ///< in the UAV's body frame
   double update_rate_hz = 0.0;  ///< SDF's <update_rate>; 0: none given
   /// In the order of uav::SensorKind.
   std::variant<CameraModel, ImuModel, RangeModel, NavSatModel, MagnetometerModel, BarometerModel,
-               OdometryModel>
+               OdometryModel, ScanModel>
       model;
   FileLocation declared_at{};  ///< in its SDF file; empty: in none
   uav::SensorKind kind() const { return static_cast<uav::SensorKind>(model.index()); }

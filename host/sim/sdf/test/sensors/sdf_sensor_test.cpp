@@ -143,53 +143,25 @@ TEST_F(SdfSensor, ASingleRayTurnsTheSensor) {
   EXPECT_NEAR(elevation, -0.2, 1e-9);
 }
 
-/// The rays of the rangefinder, in the frame of its mounting.
-std::vector<Vec3> rays_of(const Sensor& sensor) {
-  std::vector<Vec3> rays;
-  for (const Vec3& ray_S : std::get<RangeModel>(sensor.model).rays_S) {
-    rays.push_back(uav::rotate(sensor.X_BS.q, ray_S));
-  }
-  return rays;
-}
-
-TEST_F(SdfSensor, SeveralRaysAreAllOfTheScan) {
-  const std::string model = with_scan(axis(3, "-0.2", "0.4"), axis(2, "-0.1", "0.3"));
-  EXPECT_THAT(warnings(model), ElementsAre(HasSubstr("only the nearest distance is measured")));
-  const auto rays = rays_of(read(model).sensors.at(1));
-  ASSERT_EQ(rays.size(), 6u);
-  for (std::size_t i = 0; i < 6; ++i) {
-    EXPECT_NEAR(uav::norm(rays[i]), 1.0, 1e-12);
-    EXPECT_NEAR(angles_of(rays[i]).first, -0.2 + 0.3 * static_cast<double>(i % 3), 1e-9);
-    EXPECT_NEAR(angles_of(rays[i]).second, i < 3 ? -0.1 : 0.3, 1e-9);
-  }
-}
-
-// A profile's cone, which is about x, replaces the scan.
-TEST_F(SdfSensor, TheMiddleOfAScanIsTheSensorsX) {
-  const Sensor sensor =
-      read(with_scan(axis(3, "-0.2", "0.4"), axis(3, "-0.1", "0.3"))).sensors.at(1);
-  const auto [azimuth, elevation] = angles_of(uav::rotate(sensor.X_BS.q, {1, 0, 0}));
-  EXPECT_NEAR(azimuth, 0.1, 1e-9);
-  EXPECT_NEAR(elevation, 0.1, 1e-9);
-  const Vec3 middle_S = std::get<RangeModel>(sensor.model).rays_S.at(4);
-  EXPECT_NEAR(uav::norm(middle_S - Vec3{1, 0, 0}), 0.0, 1e-12);
-  const Sensor centred =
-      read(with_scan(axis(2, "-0.2", "0.2"), axis(2, "-0.1", "0.1"))).sensors.at(1);
-  EXPECT_EQ(centred.X_BS.q, uav::Quat{});
-}
-
-TEST_F(SdfSensor, AnAxisOfOneSampleLiesInTheMiddle) {
-  const auto rays =
-      rays_of(read(with_scan(axis(2, "-0.2", "0.2"), axis(1, "0", "0.4"))).sensors.at(1));
-  ASSERT_EQ(rays.size(), 2u);
-  EXPECT_NEAR(angles_of(rays[0]).second, 0.2, 1e-9);
-  EXPECT_NEAR(angles_of(rays[1]).first, 0.2, 1e-9);
+TEST_F(SdfSensor, SeveralRaysAreAScan) {
+  const std::string model = with_scan(axis(1080, "-2.0", "2.5"), axis(16, "-0.1", "0.3"));
+  EXPECT_THAT(warnings(model), IsEmpty());
+  const Sensor sensor = read(model).sensors.at(1);
+  EXPECT_EQ(sensor.kind(), uav::SensorKind::kScan);
+  EXPECT_EQ(sensor.X_BS.q, uav::Quat{});
+  const auto& scan = std::get<ScanModel>(sensor.model);
+  EXPECT_EQ(scan.rays.columns, 1080);
+  EXPECT_EQ(scan.rays.rows, 16);
+  EXPECT_EQ((std::vector{scan.rays.min_azimuth_rad, scan.rays.max_azimuth_rad,
+                         scan.rays.min_elevation_rad, scan.rays.max_elevation_rad}),
+            (std::vector{-2.0, 2.5, -0.1, 0.3}));
+  EXPECT_EQ((std::vector{scan.rays.min_m, scan.rays.max_m, scan.resolution_m, scan.noise.stddev}),
+            (std::vector{0.1, 5.0, 0.01, 0.25}));
 }
 
 TEST_F(SdfSensor, RefusesTooManyRays) {
-  const Uav most = read(with_scan(axis(32, "-1", "1"), axis(32, "-1", "1")));
-  EXPECT_EQ(std::get<RangeModel>(most.sensors.at(1).model).rays_S.size(), 1024u);
-  expect_error(refusal(request(with_scan(axis(33, "-1", "1"), axis(32, "-1", "1")))),
+  EXPECT_NO_THROW(read(with_scan(axis(2048, "-1", "1"), axis(128, "-1", "1"))));
+  expect_error(refusal(request(with_scan(axis(2049, "-1", "1"), axis(128, "-1", "1")))),
                folder_.path("uav.sdf"), 28, "<ray> of sensor 'nose'");
 }
 

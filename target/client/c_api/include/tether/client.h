@@ -3,7 +3,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include <tether/client_types.h>
+#include <tether/client_samples.h>
 
 /// @defgroup c_api C: <tether/client.h>
 /// The client library of Tether in C99: what a UAV's own program, the software under test (SUT),
@@ -190,7 +190,8 @@ enum {
   TETHER_NAVSAT = 6,               ///< receiver of satellite navigation
   TETHER_MAGNETOMETER = 7,         ///< magnetometer
   TETHER_BAROMETER = 8,            ///< barometer
-  TETHER_ODOMETRY = 9              ///< estimate of pose and velocity
+  TETHER_ODOMETRY = 9,             ///< estimate of pose and velocity
+  TETHER_SCAN = 10                 ///< lidar
 };
 
 /// Shape of an anchor: TETHER_BOX, TETHER_CYLINDER, TETHER_SPHERE.
@@ -259,6 +260,11 @@ tether_status tether_sensor_camera_model(const tether_sensor* sensor, tether_cam
 /// @return TETHER_OK, or TETHER_INVALID if the sensor measures no distances
 tether_status tether_sensor_range_limits(const tether_sensor* sensor, double* min_m,
                                          double* max_m) TETHER_NOEXCEPT;
+/// Rays of a lidar.
+/// @param sensor  the sensor  @param[out] out  its rays  @param size  sizeof *out
+/// @return TETHER_OK, or TETHER_INVALID if the sensor is not a lidar
+tether_status tether_sensor_scan_model(const tether_sensor* sensor, tether_scan_model* out,
+                                       size_t size) TETHER_NOEXCEPT;
 /// The model that a label of a segmentation camera's images means.
 /// @param sensor  the sensor  @param label  from 1; 0 means no model
 /// @return the model's name, owned by the vehicle; NULL if the sensor has no such label
@@ -369,15 +375,6 @@ tether_status tether_read_camera_into(tether_vehicle* vehicle, const char* senso
                                       tether_read_mode mode, uint8_t* rgb, size_t capacity,
                                       tether_image_info* info, size_t info_size) TETHER_NOEXCEPT;
 
-/// One measurement of an inertial measurement unit. May grow.
-typedef struct tether_imu_sample {
-  int64_t sampled_at_ns;               ///< ST [ns]
-  uint64_t index;                      ///< number of the measurement of this sensor
-  tether_vec3 angular_velocity_rad_s;  ///< w_WS in S
-  tether_vec3 specific_force_m_s2;     ///< a - g in S: +9.81 along "up" at rest
-  tether_quat q_WS;                    ///< attitude from the IMU's own filter; NaN if it has none
-} tether_imu_sample;
-
 /// Reads an IMU.
 /// @param vehicle  the UAV  @param sensor  its name  @param mode  which measurement
 /// @param[out] out  the measurement  @param size  sizeof *out
@@ -385,78 +382,40 @@ typedef struct tether_imu_sample {
 tether_status tether_read_imu(tether_vehicle* vehicle, const char* sensor, tether_read_mode mode,
                               tether_imu_sample* out, size_t size) TETHER_NOEXCEPT;
 
-/// One measurement of a rangefinder. May grow.
-typedef struct tether_range_sample {
-  int64_t sampled_at_ns;  ///< ST [ns]
-  uint64_t index;         ///< number of the measurement of this sensor
-  double range_m;         ///< along S's x [m]; +inf: nothing in reach; -inf: too close (REP-117)
-} tether_range_sample;
-
 /// Reads a rangefinder. @copydetails tether_read_imu
 tether_status tether_read_range(tether_vehicle* vehicle, const char* sensor, tether_read_mode mode,
                                 tether_range_sample* out, size_t size) TETHER_NOEXCEPT;
 
-/// One measurement of a receiver of satellite navigation. May grow.
-typedef struct tether_navsat_sample {
-  int64_t sampled_at_ns;         ///< ST [ns]
-  uint64_t index;                ///< number of the measurement of this sensor
-  int32_t has_fix;               ///< 1, or 0: all numbers below are NaN
-  int32_t reserved;              ///< 0
-  double latitude_deg;           ///< WGS 84
-  double longitude_deg;          ///< east of Greenwich
-  double altitude_m;             ///< above the ellipsoid
-  tether_vec3 velocity_ENU_m_s;  ///< east, north, up
-  double horizontal_accuracy_m;  ///< standard deviation along each axis
-  double vertical_accuracy_m;    ///< standard deviation
-  double speed_accuracy_m_s;     ///< standard deviation along each horizontal axis
-} tether_navsat_sample;
-
 /// Reads a receiver of satellite navigation. @copydetails tether_read_imu
 tether_status tether_read_navsat(tether_vehicle* vehicle, const char* sensor, tether_read_mode mode,
                                  tether_navsat_sample* out, size_t size) TETHER_NOEXCEPT;
-
-/// One measurement of a magnetometer. May grow.
-typedef struct tether_magnetometer_sample {
-  int64_t sampled_at_ns;  ///< ST [ns]
-  uint64_t index;         ///< number of the measurement of this sensor
-  tether_vec3 field_T;    ///< magnetic flux density in S [T]
-} tether_magnetometer_sample;
 
 /// Reads a magnetometer. @copydetails tether_read_imu
 tether_status tether_read_magnetometer(tether_vehicle* vehicle, const char* sensor,
                                        tether_read_mode mode, tether_magnetometer_sample* out,
                                        size_t size) TETHER_NOEXCEPT;
 
-/// One measurement of a barometer. May grow.
-typedef struct tether_barometer_sample {
-  int64_t sampled_at_ns;  ///< ST [ns]
-  uint64_t index;         ///< number of the measurement of this sensor
-  double pressure_Pa;     ///< static pressure
-  double altitude_m;      ///< of that pressure in the standard atmosphere (ISO 2533)
-} tether_barometer_sample;
-
 /// Reads a barometer. @copydetails tether_read_imu
 tether_status tether_read_barometer(tether_vehicle* vehicle, const char* sensor,
                                     tether_read_mode mode, tether_barometer_sample* out,
                                     size_t size) TETHER_NOEXCEPT;
 
-/// One estimate of pose and velocity, of the sensor's frame S in W. Not the truth. May grow.
-typedef struct tether_odometry_sample {
-  int64_t sampled_at_ns;            ///< ST [ns]
-  uint64_t index;                   ///< number of the measurement of this sensor
-  tether_vec3 p_WS;                 ///< position [m]
-  tether_quat q_WS;                 ///< attitude
-  tether_vec3 v_WS_m_s;             ///< velocity in W
-  tether_vec3 w_WS_rad_s;           ///< angular velocity in S
-  tether_vec3 position_stddev_m;    ///< along W's axes
-  tether_vec3 attitude_stddev_rad;  ///< about W's axes
-  tether_vec3 velocity_stddev_m_s;  ///< along W's axes
-} tether_odometry_sample;
-
 /// Reads an estimate of pose and velocity. @copydetails tether_read_imu
 tether_status tether_read_odometry(tether_vehicle* vehicle, const char* sensor,
                                    tether_read_mode mode, tether_odometry_sample* out,
                                    size_t size) TETHER_NOEXCEPT;
+
+/// Reads a lidar into the caller's memory.
+/// @param vehicle  the UAV  @param sensor  its name  @param mode  which scan
+/// @param[out] ranges_m  distances, row by row as in tether_scan_model; +inf: nothing in reach;
+///   -inf: too close (REP-117); unchanged by a failed call
+/// @param capacity  floats that `ranges_m` has room for
+/// @param[out] info  the description, or NULL  @param info_size  sizeof *info
+/// @return TETHER_OK, TETHER_NOTHING_YET or an @ref interaction error; TETHER_INVALID, before
+///   anything is read, if the scan does not fit
+tether_status tether_read_scan(tether_vehicle* vehicle, const char* sensor, tether_read_mode mode,
+                               float* ranges_m, size_t capacity, tether_scan_info* info,
+                               size_t info_size) TETHER_NOEXCEPT;
 
 /// @}
 /// @defgroup c_subscribing Subscriptions

@@ -244,6 +244,17 @@ class Vehicle {
   Result<OdometrySample> read_odometry(const char* sensor, Read read = Read::kNext) noexcept {
     return read_struct<OdometrySample>(tether_read_odometry, sensor, read);
   }
+  /// Reads a lidar into the caller's memory.
+  /// @param sensor  its name  @param[out] ranges_m  the distances  @param capacity  of them
+  /// @param read  which scan  @return as tether_read_scan()
+  Result<ScanInfo> read_scan(const char* sensor, float* ranges_m, std::size_t capacity,
+                             Read read = Read::kNext) noexcept {
+    ScanInfo info{};
+    const tether_status got =
+        tether_read_scan(get(), sensor, to_c(read), ranges_m, capacity, &info, sizeof info);
+    if (got != TETHER_OK) return Failure::last(got);
+    return info;
+  }
   /// Reads the battery. @return as tether_read_battery()
   Result<BatterySample> read_battery() noexcept {
     BatterySample sample{};

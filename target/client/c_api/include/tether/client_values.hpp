@@ -144,6 +144,8 @@ using Vec3 = tether_vec3;                 ///< a vector
 using Quat = tether_quat;                 ///< unit quaternion, Hamilton convention
 using Pose = tether_pose;                 ///< pose of a frame in its parent
 using CameraModel = tether_camera_model;  ///< pinhole camera with distortion
+using ScanModel = tether_scan_model;      ///< rays of a lidar
+using ScanInfo = tether_scan_info;        ///< description of a scan
 
 /// Kind of a sensor. A later library may have more.
 enum class SensorKind : std::int32_t {
@@ -157,6 +159,7 @@ enum class SensorKind : std::int32_t {
   kMagnetometer = TETHER_MAGNETOMETER,               ///< magnetometer
   kBarometer = TETHER_BAROMETER,                     ///< barometer
   kOdometry = TETHER_ODOMETRY,                       ///< estimate of pose and velocity
+  kScan = TETHER_SCAN,                               ///< lidar
 };
 /// Shape of an anchor.
 enum class AnchorShape : std::int32_t {
@@ -202,6 +205,13 @@ class Sensor {
     const tether_status got = tether_sensor_range_limits(sensor_, &limits.min_m, &limits.max_m);
     if (got != TETHER_OK) return Failure::last(got);
     return limits;
+  }
+  /// @return the rays; Code::kInvalid if this is not a lidar
+  Result<ScanModel> scan_model() const noexcept {
+    ScanModel model{};
+    const tether_status got = tether_sensor_scan_model(sensor_, &model, sizeof model);
+    if (got != TETHER_OK) return Failure::last(got);
+    return model;
   }
   /// The model that a label of a segmentation camera's images means.
   /// @param label  from 1  @return the model's name, owned by the vehicle; nullptr if there is none

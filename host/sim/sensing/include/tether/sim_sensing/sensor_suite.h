@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <set>
 #include <string>
@@ -66,6 +67,8 @@ class SensorSuite {
                       std::uint64_t index);
   uav::Sample draw(ImageMaker& images, const Snapshot& snapshot, std::size_t uav,
                    std::size_t sensor, std::uint64_t index) const;
+  void cast(const ScanModel& scan, const std::vector<double>& state, std::size_t uav,
+            const Sensor& mounted);
   void cast(const RangeModel& range, const std::vector<double>& state, std::size_t uav,
             const uav::Pose& X_BS);
 
@@ -75,8 +78,9 @@ class SensorSuite {
   std::uint64_t seed_ = 0;
   std::vector<uav::Pose> X_WB_;
   std::vector<double> distances_m_;
-  std::set<const Sensor*> seen_;                     // cameras with a picture
-  SimulatorWork work_;                               // on the caller's thread
+  std::map<const Sensor*, std::vector<uav::Vec3>> rays_S_;  // of lidars, column by column
+  std::set<const Sensor*> seen_;                            // cameras with a picture
+  SimulatorWork work_;                                      // on the caller's thread
   std::vector<std::unique_ptr<ImageMaker>> images_;  // one per thread; the caller's is the last
   std::unique_ptr<AheadDrawer> ahead_;               // last: its threads use the rest
 };

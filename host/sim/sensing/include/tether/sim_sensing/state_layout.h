@@ -16,8 +16,8 @@ struct BodyMotion {
   uav::Vec3 v_WB_W{};    ///< velocity of B's origin now [m/s]
 };
 
-/// How many steps the shutter of any camera reaches back: that many past poses of each moving body
-/// are in a captured state.
+/// How many steps the shutter of any camera, and the sweep of any lidar, reaches back: that many
+/// past poses of each moving body are in a captured state.
 /// @throws Error(kBadFile) for a shutter that is negative or longer than 1 s.
 std::size_t shutter_steps(const World& world);
 /// The same of one camera, with such steps. @pre a shutter of at most 1 s
