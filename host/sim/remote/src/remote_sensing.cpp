@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <tether/base/printable.h>
+#include <tether/sim_protocol/codec.h>
 
 namespace tether::sim {
 namespace {

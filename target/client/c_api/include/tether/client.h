@@ -3,7 +3,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include <tether/client_samples.h>
+#include <tether/client_types.h>
 
 /// @defgroup c_api C: <tether/client.h>
 /// The client library of Tether in C99: what a UAV's own program, the software under test (SUT),
@@ -260,11 +260,6 @@ tether_status tether_sensor_camera_model(const tether_sensor* sensor, tether_cam
 /// @return TETHER_OK, or TETHER_INVALID if the sensor measures no distances
 tether_status tether_sensor_range_limits(const tether_sensor* sensor, double* min_m,
                                          double* max_m) TETHER_NOEXCEPT;
-/// Rays of a lidar.
-/// @param sensor  the sensor  @param[out] out  its rays  @param size  sizeof *out
-/// @return TETHER_OK, or TETHER_INVALID if the sensor is not a lidar
-tether_status tether_sensor_scan_model(const tether_sensor* sensor, tether_scan_model* out,
-                                       size_t size) TETHER_NOEXCEPT;
 /// The model that a label of a segmentation camera's images means.
 /// @param sensor  the sensor  @param label  from 1; 0 means no model
 /// @return the model's name, owned by the vehicle; NULL if the sensor has no such label
@@ -375,6 +370,15 @@ tether_status tether_read_camera_into(tether_vehicle* vehicle, const char* senso
                                       tether_read_mode mode, uint8_t* rgb, size_t capacity,
                                       tether_image_info* info, size_t info_size) TETHER_NOEXCEPT;
 
+/// One measurement of an inertial measurement unit. May grow.
+typedef struct tether_imu_sample {
+  int64_t sampled_at_ns;               ///< ST [ns]
+  uint64_t index;                      ///< number of the measurement of this sensor
+  tether_vec3 angular_velocity_rad_s;  ///< w_WS in S
+  tether_vec3 specific_force_m_s2;     ///< a - g in S: +9.81 along "up" at rest
+  tether_quat q_WS;                    ///< attitude from the IMU's own filter; NaN if it has none
+} tether_imu_sample;
+
 /// Reads an IMU.
 /// @param vehicle  the UAV  @param sensor  its name  @param mode  which measurement
 /// @param[out] out  the measurement  @param size  sizeof *out
@@ -382,89 +386,16 @@ tether_status tether_read_camera_into(tether_vehicle* vehicle, const char* senso
 tether_status tether_read_imu(tether_vehicle* vehicle, const char* sensor, tether_read_mode mode,
                               tether_imu_sample* out, size_t size) TETHER_NOEXCEPT;
 
+/// One measurement of a rangefinder. May grow.
+typedef struct tether_range_sample {
+  int64_t sampled_at_ns;  ///< ST [ns]
+  uint64_t index;         ///< number of the measurement of this sensor
+  double range_m;         ///< along S's x [m]; +inf: nothing in reach; -inf: too close (REP-117)
+} tether_range_sample;
+
 /// Reads a rangefinder. @copydetails tether_read_imu
 tether_status tether_read_range(tether_vehicle* vehicle, const char* sensor, tether_read_mode mode,
                                 tether_range_sample* out, size_t size) TETHER_NOEXCEPT;
-
-/// Reads a receiver of satellite navigation. @copydetails tether_read_imu
-tether_status tether_read_navsat(tether_vehicle* vehicle, const char* sensor, tether_read_mode mode,
-                                 tether_navsat_sample* out, size_t size) TETHER_NOEXCEPT;
-
-/// Reads a magnetometer. @copydetails tether_read_imu
-tether_status tether_read_magnetometer(tether_vehicle* vehicle, const char* sensor,
-                                       tether_read_mode mode, tether_magnetometer_sample* out,
-                                       size_t size) TETHER_NOEXCEPT;
-
-/// Reads a barometer. @copydetails tether_read_imu
-tether_status tether_read_barometer(tether_vehicle* vehicle, const char* sensor,
-                                    tether_read_mode mode, tether_barometer_sample* out,
-                                    size_t size) TETHER_NOEXCEPT;
-
-/// Reads an estimate of pose and velocity. @copydetails tether_read_imu
-tether_status tether_read_odometry(tether_vehicle* vehicle, const char* sensor,
-                                   tether_read_mode mode, tether_odometry_sample* out,
-                                   size_t size) TETHER_NOEXCEPT;
-
-/// Reads a lidar into the caller's memory.
-/// @param vehicle  the UAV  @param sensor  its name  @param mode  which scan
-/// @param[out] ranges_m  distances, row by row as in tether_scan_model; +inf: nothing in reach;
-///   -inf: too close (REP-117); unchanged by a failed call
-/// @param capacity  floats that `ranges_m` has room for
-/// @param[out] info  the description, or NULL  @param info_size  sizeof *info
-/// @return TETHER_OK, TETHER_NOTHING_YET or an @ref interaction error; TETHER_INVALID, before
-///   anything is read, if the scan does not fit
-tether_status tether_read_scan(tether_vehicle* vehicle, const char* sensor, tether_read_mode mode,
-                               float* ranges_m, size_t capacity, tether_scan_info* info,
-                               size_t info_size) TETHER_NOEXCEPT;
-
-/// @}
-/// @defgroup c_subscribing Subscriptions
-/// A thread of the library reads a periodic sensor continuously, as TETHER_READ_NEXT does, and
-/// calls the program with each measurement at the ET at which it is available. The callback runs in
-/// that thread with every signal blocked. It can call the vehicle, and must not throw. What it
-/// receives is valid until it returns. If measurements arrive while it runs, it receives the newest
-/// of them afterwards. Measurements that other threads read from the same sensor are not delivered.
-///
-/// A subscription needs tether-exec.
-/// @{
-
-/// Measurements that are delivered to a callback.
-typedef struct tether_subscription tether_subscription;
-/// Receives an image. @param image  valid until the return  @param user  as subscribed
-typedef void (*tether_on_image)(const tether_image* image, void* user);
-/// Receives a sample. @param sample  valid until the return  @param user  as subscribed
-typedef void (*tether_on_imu)(const tether_imu_sample* sample, void* user);
-/// Receives a sample. @param sample  valid until the return  @param user  as subscribed
-typedef void (*tether_on_range)(const tether_range_sample* sample, void* user);
-
-/// Subscribes to a camera.
-/// @param vehicle  the UAV  @param sensor  name of a periodic camera
-/// @param on_image  is called with each image  @param user  is passed to it; may be NULL
-/// @param[out] out  the subscription; end it with tether_unsubscribe()
-/// @return TETHER_OK; TETHER_INVALID if tether_is_concurrent() is 0, the UAV has no such sensor, or
-///   the sensor measures on demand
-tether_status tether_subscribe_camera(tether_vehicle* vehicle, const char* sensor,
-                                      tether_on_image on_image, void* user,
-                                      tether_subscription** out) TETHER_NOEXCEPT;
-/// Subscribes to an IMU.
-/// @param vehicle  the UAV  @param sensor  name of a periodic sensor of this kind
-/// @param on_sample  is called with each sample  @param user  is passed to it; may be NULL
-/// @param[out] out  the subscription; end it with tether_unsubscribe()
-/// @return as tether_subscribe_camera()
-tether_status tether_subscribe_imu(tether_vehicle* vehicle, const char* sensor,
-                                   tether_on_imu on_sample, void* user,
-                                   tether_subscription** out) TETHER_NOEXCEPT;
-/// Subscribes to a rangefinder. @copydetails tether_subscribe_imu
-tether_status tether_subscribe_range(tether_vehicle* vehicle, const char* sensor,
-                                     tether_on_range on_sample, void* user,
-                                     tether_subscription** out) TETHER_NOEXCEPT;
-/// Whether measurements still arrive. Never blocks.
-/// @param subscription  the subscription
-/// @return TETHER_OK if they do; else why none will arrive, for instance TETHER_RUN_ENDED
-tether_status tether_subscription_status(const tether_subscription* subscription) TETHER_NOEXCEPT;
-/// Ends a subscription. After the return no callback runs, except one that calls this itself. Must
-/// be called before tether_disconnect(). @param subscription  the subscription, or NULL
-void tether_unsubscribe(tether_subscription* subscription) TETHER_NOEXCEPT;
 
 /// @}
 /// @defgroup c_flying Flying, waiting, reporting
@@ -522,4 +453,6 @@ tether_status tether_finish(tether_vehicle* vehicle, int32_t reached_goal, const
 #endif
 /// @}
 #include <tether/client_battery.h>
+#include <tether/client_navigation.h>
 #include <tether/client_radio.h>
+#include <tether/client_subscribing.h>

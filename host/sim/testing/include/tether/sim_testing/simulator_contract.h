@@ -110,6 +110,76 @@ TEST_P(SimulatorContract, RaysEndAtTheNextObject) {
   EXPECT_NEAR(measure_now<uav::RangeSample>(*simulator, kRange).range_m, 4.9, 1e-6);
 }
 
+// Without noise, each says what the ground truth says.
+TEST_P(SimulatorContract, NavigationSensorsMeasureTheGroundTruth) {
+  World world = test_world();
+  world.place = Place{10.0, 20.0, 300.0, 0.0};
+  auto& sensors = world.uavs[0].sensors;
+  const std::size_t first = sensors.size();
+  sensors.push_back({"navsat", {}, 0.0, NavSatModel{}});
+  sensors.push_back({"magnetometer", {}, 0.0, MagnetometerModel{}});
+  sensors.push_back({"barometer", {}, 0.0, BarometerModel{}});
+  sensors.push_back({"odometry", {}, 0.0, OdometryModel{}});
+  const uav::Vec3 field_T = world.magnetic_field_T;
+  const auto simulator = make(std::move(world));
+  simulator->apply(0, {{1.0, 0.5, 0.25}, 0.5});
+  simulator->advance_to(at(std::chrono::seconds(1)));
+  const uav::BodyState truth = simulator->ground_truth(0).body;
+  ASSERT_GT(truth.v_WB.x, 0.2);
+
+  const auto odometry = measure_now<uav::OdometrySample>(*simulator, first + 3);
+  EXPECT_EQ(odometry.p_WS, truth.p_WB);
+  EXPECT_EQ(odometry.q_WS, truth.q_WB);
+  EXPECT_EQ(odometry.v_WS_m_s, truth.v_WB);
+  EXPECT_EQ(odometry.w_WS_rad_s, truth.w_WB_B);
+  const auto navsat = measure_now<uav::NavSatSample>(*simulator, first);
+  EXPECT_TRUE(navsat.has_fix);
+  EXPECT_EQ(navsat.velocity_ENU_m_s, truth.v_WB);
+  EXPECT_NEAR(navsat.altitude_m, 300.0 + truth.p_WB.z, 1e-6);
+  EXPECT_NEAR((navsat.longitude_deg - 20.0) * 109'639.0, truth.p_WB.x, 1e-3)
+      << "metres of a degree of longitude at 10 degrees north";
+  const auto magnetometer = measure_now<uav::MagnetometerSample>(*simulator, first + 1);
+  EXPECT_LT(norm(rotate(truth.q_WB, magnetometer.field_T) - field_T), 1e-15);
+  const auto barometer = measure_now<uav::BarometerSample>(*simulator, first + 2);
+  EXPECT_NEAR(barometer.altitude_m, 300.0 + truth.p_WB.z, 1e-6);
+}
+
+// The UAV turns: the first column of a spinning lidar was measured earlier, with another heading.
+TEST_P(SimulatorContract, AScanMeasuresEachColumnInItsOwnInstant) {
+  World world = test_world();
+  world.models.push_back(box_model("wall", {5.0, 0.0, 1.0}, {0.2, 40.0, 2.0}, {0.8, 0.2, 0.2}));
+  ScanModel scan{{.columns = 5,
+                  .rows = 2,
+                  .min_azimuth_rad = -0.4,
+                  .max_azimuth_rad = 0.4,
+                  .max_elevation_rad = 0.01,
+                  .min_m = 0.1,
+                  .max_m = 30.0},
+                 0.0,
+                 {}};
+  auto& sensors = world.uavs[0].sensors;
+  const std::size_t first = sensors.size();
+  sensors.push_back({"still", {}, 0.0, scan});
+  scan.rays.sweep_s = 0.1;
+  sensors.push_back({"spinning", {}, 0.0, scan});
+  const auto simulator = make(std::move(world));
+  const auto fly_to = [&](Duration time) {
+    simulator->apply(0, {{}, 1.0});
+    simulator->advance_to(at(time));
+    return measure_now<uav::ScanSample>(*simulator, first).ranges_m;
+  };
+  const auto earlier = fly_to(std::chrono::milliseconds(500));
+  const auto halfway = fly_to(std::chrono::milliseconds(550));
+  const auto now = fly_to(std::chrono::milliseconds(600));
+  const auto spinning = measure_now<uav::ScanSample>(*simulator, first + 1);
+  EXPECT_EQ(spinning.sampled_at, at(std::chrono::milliseconds(600)));
+  ASSERT_EQ(spinning.ranges_m.size(), 10U);
+  EXPECT_EQ(spinning.ranges_m[0], earlier[0]);
+  EXPECT_EQ(spinning.ranges_m[2], halfway[2]);
+  EXPECT_EQ(spinning.ranges_m[9], now[9]);
+  EXPECT_NE(earlier[0], now[0]);
+}
+
 TEST_P(SimulatorContract, RefusesInvalidCalls) {
   const auto simulator = make(test_world());
   simulator->advance_to(at(std::chrono::milliseconds(10)));

@@ -1,29 +1,17 @@
 #pragma once
 
-#include <stdint.h>
+#include <tether/client.h>
 
-#include <tether/client_types.h>
+/// @cond
+#ifdef __cplusplus
+extern "C" {
+#endif
+/// @endcond
 
-/// @defgroup c_samples Measurements
+/// @defgroup c_navigation Navigation and lidars
 /// @ingroup c_api
-/// What sensors measure. Each struct may grow at its end.
+/// Sensors that say where the UAV is, and lidars. Their reads follow the rules of @ref c_reading.
 /// @{
-
-/// One measurement of an inertial measurement unit. May grow.
-typedef struct tether_imu_sample {
-  int64_t sampled_at_ns;               ///< ST [ns]
-  uint64_t index;                      ///< number of the measurement of this sensor
-  tether_vec3 angular_velocity_rad_s;  ///< w_WS in S
-  tether_vec3 specific_force_m_s2;     ///< a - g in S: +9.81 along "up" at rest
-  tether_quat q_WS;                    ///< attitude from the IMU's own filter; NaN if it has none
-} tether_imu_sample;
-
-/// One measurement of a rangefinder. May grow.
-typedef struct tether_range_sample {
-  int64_t sampled_at_ns;  ///< ST [ns]
-  uint64_t index;         ///< number of the measurement of this sensor
-  double range_m;         ///< along S's x [m]; +inf: nothing in reach; -inf: too close (REP-117)
-} tether_range_sample;
 
 /// One measurement of a receiver of satellite navigation. May grow.
 typedef struct tether_navsat_sample {
@@ -40,12 +28,21 @@ typedef struct tether_navsat_sample {
   double speed_accuracy_m_s;     ///< standard deviation along each horizontal axis
 } tether_navsat_sample;
 
+/// Reads a receiver of satellite navigation. @copydetails tether_read_imu
+tether_status tether_read_navsat(tether_vehicle* vehicle, const char* sensor, tether_read_mode mode,
+                                 tether_navsat_sample* out, size_t size) TETHER_NOEXCEPT;
+
 /// One measurement of a magnetometer. May grow.
 typedef struct tether_magnetometer_sample {
   int64_t sampled_at_ns;  ///< ST [ns]
   uint64_t index;         ///< number of the measurement of this sensor
   tether_vec3 field_T;    ///< magnetic flux density in S [T]
 } tether_magnetometer_sample;
+
+/// Reads a magnetometer. @copydetails tether_read_imu
+tether_status tether_read_magnetometer(tether_vehicle* vehicle, const char* sensor,
+                                       tether_read_mode mode, tether_magnetometer_sample* out,
+                                       size_t size) TETHER_NOEXCEPT;
 
 /// One measurement of a barometer. May grow.
 typedef struct tether_barometer_sample {
@@ -54,6 +51,11 @@ typedef struct tether_barometer_sample {
   double pressure_Pa;     ///< static pressure
   double altitude_m;      ///< of that pressure in the standard atmosphere (ISO 2533)
 } tether_barometer_sample;
+
+/// Reads a barometer. @copydetails tether_read_imu
+tether_status tether_read_barometer(tether_vehicle* vehicle, const char* sensor,
+                                    tether_read_mode mode, tether_barometer_sample* out,
+                                    size_t size) TETHER_NOEXCEPT;
 
 /// One estimate of pose and velocity, of the sensor's frame S in W. Not the truth. May grow.
 typedef struct tether_odometry_sample {
@@ -68,6 +70,11 @@ typedef struct tether_odometry_sample {
   tether_vec3 velocity_stddev_m_s;  ///< along W's axes
 } tether_odometry_sample;
 
+/// Reads an estimate of pose and velocity. @copydetails tether_read_imu
+tether_status tether_read_odometry(tether_vehicle* vehicle, const char* sensor,
+                                   tether_read_mode mode, tether_odometry_sample* out,
+                                   size_t size) TETHER_NOEXCEPT;
+
 /// Where the rays of a lidar point. Ray (row, column) is number row x columns + column. May grow.
 typedef struct tether_scan_model {
   int32_t columns;           ///< rays of a row
@@ -81,6 +88,12 @@ typedef struct tether_scan_model {
   double sweep_s;            ///< from the first column to the last, which is measured at sampled_at
 } tether_scan_model;
 
+/// Rays of a lidar.
+/// @param sensor  the sensor  @param[out] out  its rays  @param size  sizeof *out
+/// @return TETHER_OK, or TETHER_INVALID if the sensor is not a lidar
+tether_status tether_sensor_scan_model(const tether_sensor* sensor, tether_scan_model* out,
+                                       size_t size) TETHER_NOEXCEPT;
+
 /// Describes a scan. May grow.
 typedef struct tether_scan_info {
   int64_t sampled_at_ns;  ///< ST of the last column [ns]
@@ -88,4 +101,20 @@ typedef struct tether_scan_info {
   uint64_t rays;          ///< how many distances there are
 } tether_scan_info;
 
+/// Reads a lidar into the caller's memory.
+/// @param vehicle  the UAV  @param sensor  its name  @param mode  which scan
+/// @param[out] ranges_m  distances, row by row as in tether_scan_model; +inf: nothing in reach;
+///   -inf: too close (REP-117); unchanged by a failed call
+/// @param capacity  floats that `ranges_m` has room for
+/// @param[out] info  the description, or NULL  @param info_size  sizeof *info
+/// @return TETHER_OK, TETHER_NOTHING_YET or an @ref interaction error; TETHER_INVALID, before
+///   anything is read, if the scan does not fit
+tether_status tether_read_scan(tether_vehicle* vehicle, const char* sensor, tether_read_mode mode,
+                               float* ranges_m, size_t capacity, tether_scan_info* info,
+                               size_t info_size) TETHER_NOEXCEPT;
+
 /// @}
+
+#ifdef __cplusplus
+}
+#endif
