@@ -35,18 +35,24 @@ std::optional<sync::ClockBound> bound_of(const link::Hello& hello, int cores) {
   return std::nullopt;
 }
 
+// In free running the state at the next read is not known, and nothing is drawn ahead.
+Sampler::Sensor make_sensor(const sim::Sensor& sensor, const std::string& uav,
+                            const uav::SensorTiming& timing, const RunOptions& options) {
+  if (options.policy == sync::SyncPolicy::kFreeRunning)
+    return {.name = sensor.name, .schedule = SensorSchedule::in_free_running(timing)};
+  return {.name = sensor.name,
+          .schedule = {timing, options.seed, random_stream(uav, sensor.name, "delay")},
+          .is_drawn = sensor.kind() == uav::SensorKind::kCamera};
+}
+
 std::vector<Sampler> make_samplers(const sim::Simulator& simulator, const RunOptions& options) {
-  const bool synchronised = options.policy == sync::SyncPolicy::kConservativeBarrier;
   std::vector<Sampler> samplers;
   for (const sim::Uav& uav : simulator.world().uavs) {
     const auto& timings = options.uavs[samplers.size()].timings;
     std::vector<Sampler::Sensor> sensors;
     for (const sim::Sensor& sensor : uav.sensors)
-      sensors.push_back({.name = sensor.name,
-                         .schedule = {timings[sensors.size()], options.seed,
-                                      random_stream(uav.name, sensor.name, "delay")},
-                         .is_drawn = sensor.kind() == uav::SensorKind::kCamera});
-    samplers.emplace_back(std::move(sensors), simulator.grid(), synchronised);
+      sensors.push_back(make_sensor(sensor, uav.name, timings[sensors.size()], options));
+    samplers.emplace_back(std::move(sensors), simulator.grid());
   }
   return samplers;
 }

@@ -22,7 +22,7 @@ TEST(Stepper, ACommandTakesEffectAtTheFirstBoundaryFromItsTimeOn) {
   RunLog log(recorder);
   sync::BarrierSynchronizer barrier(simulator.grid());
   barrier.add(ExecTime{});
-  Stepper stepper(simulator, barrier, log, milliseconds(10), {Sampler({}, simulator.grid(), true)});
+  Stepper stepper(simulator, barrier, log, milliseconds(10), {Sampler({}, simulator.grid())});
   stepper.act();
   const std::pair<int, int> cases[] = {{0, 0}, {1'000, 1}, {1'001, 2}, {2'999, 3}};  // us, st_ms
   for (const auto& [t, effect] : cases)

@@ -34,8 +34,7 @@ class Validator : public testing::Test {
 
   Sampler sensors_{{{"imu", {uav::PeriodicTiming{milliseconds(5), Duration(0), {}}, 0, 0}},
                     {"range", {uav::OnDemandTiming{}, 0, 1}}},
-                   StepGrid(milliseconds(1)),
-                   true};
+                   StepGrid(milliseconds(1))};
   Standing sut_{
       .running = true, .bound = us(50), .next_sequence = 4, .st = {}, .sensors = sensors_};
 };

@@ -158,7 +158,7 @@ struct LifeCase {
 };
 
 TEST(ShowsLife, IgnoresTheHelperThreadOfAStuckSut) {
-  const Sampler sensors({}, StepGrid(milliseconds(1)), true);
+  const Sampler sensors({}, StepGrid(milliseconds(1)));
   constexpr auto kCpu = computer::ClockKind::kCpu, kWall = computer::ClockKind::kWall;
   const link::Progress same{et_ms(5)}, further{et_ms(6)};
   const LifeCase cases[] = {

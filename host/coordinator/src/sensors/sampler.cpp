@@ -11,24 +11,16 @@ namespace tether::coordinator {
 std::optional<Measurement> Sampler::plan(std::uint64_t call, const link::ReadSensor& read,
                                          SimTime t) {
   SensorSchedule& schedule = sensors_[read.sensor].schedule;
-  const auto measurement = choose(schedule, read, t);
+  const auto measurement = read.only_if_available ? schedule.choose_available(t, read.latest)
+                                                  : schedule.choose(t, read.latest);
   if (!measurement) return std::nullopt;
   schedule.mark_read(*measurement);
   sensors_[read.sensor].forecast.requested(t, read.latest, measurement->index);
   sensors_[read.sensor].forecasted.reset();
-  const bool on_demand = !synchronised_ || !schedule.is_periodic();
+  const bool on_demand = !schedule.sampling_instant(measurement->index);
   reads_.push_back(
       {.call = call, .sensor = read.sensor, .measurement = *measurement, .on_demand = on_demand});
   return measurement;
-}
-
-std::optional<Measurement> Sampler::choose(const SensorSchedule& schedule,
-                                           const link::ReadSensor& read, SimTime t) const {
-  if (read.only_if_available)
-    return synchronised_ ? schedule.choose_available(t, read.latest)
-                         : schedule.choose_available_free_running(t, read.latest);
-  return synchronised_ ? schedule.choose(t, read.latest)
-                       : schedule.choose_free_running(t, read.latest);
 }
 
 SimTime Sampler::next_due() const {
@@ -36,7 +28,7 @@ SimTime Sampler::next_due() const {
   for (const Read& read : reads_)
     if (read.on_demand && !read.state)
       due = std::min(due, grid_.floor(read.measurement.sampled_at));
-  if (!synchronised_ || closed_) return due;
+  if (closed_) return due;
   for (const Sensor& sensor : sensors_)
     if (const auto instant = sensor.schedule.sampling_instant(sensor.next_capture))
       due = std::min(due, grid_.floor(*instant));
@@ -49,7 +41,7 @@ void Sampler::sample(SimTime st, SimTime earliest, const Capture& capture) {
     if (grid_.floor(read.measurement.sampled_at) > st) continue;
     read.state = capture();
   }
-  if (!synchronised_ || closed_) return;
+  if (closed_) return;
   for (std::size_t i = 0; i < sensors_.size(); ++i) sample_periodic(i, st, earliest, capture);
 }
 

@@ -38,9 +38,7 @@ class Sampler {
   using Announce =
       std::function<void(const sim::Snapshot&, std::size_t sensor, std::uint64_t index)>;
 
-  /// `synchronised`: false in free running.
-  Sampler(std::vector<Sensor> sensors, StepGrid grid, bool synchronised)
-      : sensors_(std::move(sensors)), grid_(grid), synchronised_(synchronised) {}
+  Sampler(std::vector<Sensor> sensors, StepGrid grid) : sensors_(std::move(sensors)), grid_(grid) {}
 
   std::size_t size() const { return sensors_.size(); }
   const std::string& name(std::size_t sensor) const { return sensors_[sensor].name; }
@@ -76,15 +74,12 @@ class Sampler {
   void close();
 
  private:
-  std::optional<Measurement> choose(const SensorSchedule& schedule, const link::ReadSensor& read,
-                                    SimTime t) const;
   void sample_periodic(std::size_t sensor, SimTime st, SimTime earliest, const Capture& capture);
   std::uint64_t first_needed(std::size_t sensor, SimTime earliest) const;
   const sim::Snapshot* find_state(const Read& read) const;
 
   std::vector<Sensor> sensors_;
   StepGrid grid_;
-  bool synchronised_;
   bool closed_ = false;
   std::vector<Read> reads_;  // in the order of their calls
 };

@@ -5,8 +5,18 @@
 
 namespace tether::coordinator {
 
-SensorSchedule::SensorSchedule(uav::SensorTiming timing, std::uint64_t seed, std::uint64_t stream)
-    : timing_(std::move(timing)), seed_(seed), stream_(stream) {}
+SensorSchedule::SensorSchedule(const uav::SensorTiming& timing, std::uint64_t seed,
+                               std::uint64_t stream)
+    : seed_(seed), stream_(stream) {
+  std::visit([this](const auto& t) { timing_ = t; }, timing);
+}
+
+SensorSchedule SensorSchedule::in_free_running(const uav::SensorTiming& timing) {
+  SensorSchedule schedule(uav::OnDemandTiming{uav::ConstantDelay{Duration(0)}}, 0, 0);
+  if (const auto* periodic = std::get_if<uav::PeriodicTiming>(&timing))
+    schedule.timing_ = Topic{*periodic};
+  return schedule;
+}
 
 Measurement SensorSchedule::periodic(const uav::PeriodicTiming& timing, std::uint64_t index) const {
   const SimTime sampled_at = uav::sampling_instant(timing, index);
@@ -46,29 +56,19 @@ Measurement SensorSchedule::next_available(const uav::PeriodicTiming& timing,
 }
 
 Measurement SensorSchedule::choose(SimTime t, bool latest) const {
-  if (const auto* timing = std::get_if<uav::PeriodicTiming>(&timing_)) {
-    if (const auto there = choose_available(t, latest)) return *there;
+  if (const auto* timing = std::get_if<uav::OnDemandTiming>(&timing_))
+    return {unread_, t, t + uav::draw(timing->delay, {seed_, stream_, unread_})};
+  if (const auto there = choose_available(t, latest)) return *there;
+  if (const auto* timing = std::get_if<uav::PeriodicTiming>(&timing_))
     return next_available(*timing, unread_);
-  }
-  const auto& timing = std::get<uav::OnDemandTiming>(timing_);
-  return {unread_, t, t + uav::draw(timing.delay, {seed_, stream_, unread_})};
-}
-
-Measurement SensorSchedule::choose_free_running(SimTime t, bool latest) const {
-  const auto* timing = std::get_if<uav::PeriodicTiming>(&timing_);
-  if (!timing) return {unread_, t, t};
-  if (const auto there = choose_available_free_running(t, latest)) return *there;
-  const SimTime next = uav::sampling_instant(*timing, unread_);
+  const SimTime next = uav::sampling_instant(std::get<Topic>(timing_).timing, unread_);
   return {unread_, next, next};
 }
 
 std::optional<Measurement> SensorSchedule::choose_available(SimTime t, bool latest) const {
-  return newest_available(std::get<uav::PeriodicTiming>(timing_), t, latest ? 0 : unread_);
-}
-
-std::optional<Measurement> SensorSchedule::choose_available_free_running(SimTime t,
-                                                                         bool latest) const {
-  const auto newest = newest_sampled(std::get<uav::PeriodicTiming>(timing_), t);
+  if (const auto* timing = std::get_if<uav::PeriodicTiming>(&timing_))
+    return newest_available(*timing, t, latest ? 0 : unread_);
+  const auto newest = newest_sampled(std::get<Topic>(timing_).timing, t);
   if (!newest || !(latest || *newest >= unread_)) return std::nullopt;
   return Measurement{*newest, t, t};
 }

@@ -22,38 +22,39 @@ struct Measurement {
 /// time and on the earlier reads.
 class SensorSchedule {
  public:
-  SensorSchedule(uav::SensorTiming timing, std::uint64_t seed, std::uint64_t stream);
+  SensorSchedule(const uav::SensorTiming& timing, std::uint64_t seed, std::uint64_t stream);
+  /// The same in free running (DESIGN section 2, rule 8): measurements are the state at the read,
+  /// without delay. Periodic: one measurement per period, like a topic.
+  static SensorSchedule in_free_running(const uav::SensorTiming& timing);
 
   /// The measurement for a read at `t`. Periodic: the newest that is available at `t` and not yet
   /// read (with `latest`: read or not), else the first that is available after `t`. On demand:
   /// sampled at `t`.
   Measurement choose(SimTime t, bool latest) const;
-  /// The same in free running (DESIGN section 2, rule 8): the state at `t`, without delay.
-  /// Periodic: one measurement per period. If that was already read, a read without `latest` waits
-  /// for the next sampling instant.
-  Measurement choose_free_running(SimTime t, bool latest) const;
   /// The measurement for a read at `t` that does not wait; none if none is available. @pre
   /// periodic.
   std::optional<Measurement> choose_available(SimTime t, bool latest) const;
-  /// The same in free running.
-  std::optional<Measurement> choose_available_free_running(SimTime t, bool latest) const;
   /// Marks it as read.
   void mark_read(const Measurement& measurement);
 
-  bool is_periodic() const { return std::holds_alternative<uav::PeriodicTiming>(timing_); }
-  /// When measurement `index` is sampled; none for a sensor on demand.
+  bool is_periodic() const { return !std::holds_alternative<uav::OnDemandTiming>(timing_); }
+  /// When measurement `index` is sampled; none if that is at a read.
   std::optional<SimTime> sampling_instant(std::uint64_t index) const;
   /// The first measurement that a read at `t` or later can return.
   std::uint64_t first_readable(SimTime t) const;
 
  private:
+  /// Of a periodic sensor in free running.
+  struct Topic {
+    uav::PeriodicTiming timing;
+  };
   Measurement periodic(const uav::PeriodicTiming& timing, std::uint64_t index) const;
   static std::optional<std::uint64_t> newest_sampled(const uav::PeriodicTiming& timing, SimTime t);
   std::optional<Measurement> newest_available(const uav::PeriodicTiming& timing, SimTime t,
                                               std::uint64_t first) const;
   Measurement next_available(const uav::PeriodicTiming& timing, std::uint64_t first) const;
 
-  uav::SensorTiming timing_;
+  std::variant<uav::OnDemandTiming, uav::PeriodicTiming, Topic> timing_;
   std::uint64_t seed_;
   std::uint64_t stream_;
   std::uint64_t unread_ = 0;  ///< first index after the last one that was read

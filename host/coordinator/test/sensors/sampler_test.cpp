@@ -21,9 +21,11 @@ SimTime st_us(std::int64_t value) {
 /// A sampler of one sensor, over a simulator whose state is its instant.
 class Sampling : public testing::Test {
  protected:
-  void make(uav::SensorTiming timing, bool synchronised = true, std::uint64_t seed = 0) {
-    sampler_.emplace(std::vector<Sampler::Sensor>{{"sensor", {std::move(timing), seed, 0}}}, kGrid,
-                     synchronised);
+  void make(const uav::SensorTiming& timing, std::uint64_t seed = 0) {
+    make(SensorSchedule(timing, seed, 0));
+  }
+  void make(SensorSchedule schedule) {
+    sampler_.emplace(std::vector<Sampler::Sensor>{{"sensor", std::move(schedule)}}, kGrid);
   }
   void sample(SimTime st, SimTime earliest) {
     sampler_->sample(st, earliest, [&] {
@@ -62,7 +64,7 @@ TEST_F(Sampling, CapturesPeriodicSensorsUnlessInFreeRunning) {
   EXPECT_EQ(sampler_->next_due(), st_us(0));
   sample(st_us(0), st_us(0));
   EXPECT_EQ(sampler_->next_due(), st_us(10'000));
-  make(kPeriodic, false);
+  make(SensorSchedule::in_free_running(kPeriodic));
   EXPECT_EQ(sampler_->next_due(), SimTime::max());
 }
 
@@ -83,7 +85,7 @@ TEST_F(Sampling, NoStateIsDroppedBeforeItIsRead) {
     SCOPED_TRACE(seed);
     make(uav::PeriodicTiming{milliseconds(5), Duration(0),
                              uav::NormalDelay{milliseconds(8), milliseconds(9)}},
-         true, seed);
+         seed);
     KeyedRandom random({.seed = seed});
     std::vector<std::pair<std::uint64_t, SimTime>> open;
     SimTime st{}, stamp{};
@@ -112,7 +114,7 @@ TEST_F(Sampling, AnnouncesWhatWillBeRead) {
     sampler_.emplace(
         std::vector<Sampler::Sensor>{
             {.name = "sensor", .schedule = {kPeriodic, 0, 0}, .is_drawn = is_drawn}},
-        kGrid, true);
+        kGrid);
     std::vector<std::uint64_t> announced;
     const auto announce = [&] {
       for (int i = 0; i < 2; ++i)

@@ -14,8 +14,11 @@ SimTime ms(std::int64_t value) {
   return SimTime(milliseconds(value));
 }
 
+uav::PeriodicTiming every_33_ms(Duration delay, Duration phase = Duration(0)) {
+  return {milliseconds(33), phase, uav::ConstantDelay{delay}};
+}
 SensorSchedule camera(Duration delay, Duration phase = Duration(0)) {
-  return {uav::PeriodicTiming{milliseconds(33), phase, uav::ConstantDelay{delay}}, 0, 0};
+  return {every_33_ms(delay, phase), 0, 0};
 }
 
 struct PeriodicCase {
@@ -53,7 +56,9 @@ TEST(SensorSchedule, OnDemandMeasuresAtTheRequestAndDeliversADelayLater) {
 
 // Free running: measurement 1 (of 33 ms) has been read.
 TEST(SensorSchedule, FreeRunningReadsGetTheStateAtOnceOncePerPeriod) {
-  SensorSchedule schedule = camera(milliseconds(10));
+  SensorSchedule schedule = SensorSchedule::in_free_running(every_33_ms(milliseconds(10)));
+  EXPECT_TRUE(schedule.is_periodic());
+  EXPECT_FALSE(schedule.sampling_instant(0)) << "its samples are of the reads";
   schedule.mark_read({1, ms(40), ms(40)});
   const PeriodicCase cases[] = {
       {"that of the period was read: waits for the next", 44, false, {2, ms(66), ms(66)}},
@@ -62,12 +67,12 @@ TEST(SensorSchedule, FreeRunningReadsGetTheStateAtOnceOncePerPeriod) {
       {"periods that passed by are not read later", 150, false, {4, ms(150), ms(150)}},
   };
   for (const auto& c : cases)
-    EXPECT_EQ(schedule.choose_free_running(ms(c.read_ms), c.latest), c.expected) << c.what;
-  EXPECT_EQ(camera(Duration(0), milliseconds(5)).choose_free_running(ms(0), true),
-            (Measurement{0, ms(5), ms(5)}))
-      << "before the phase";
-  const SensorSchedule on_demand(uav::OnDemandTiming{uav::ConstantDelay{milliseconds(98)}}, 0, 0);
-  EXPECT_EQ(on_demand.choose_free_running(ms(7), false), (Measurement{0, ms(7), ms(7)}));
+    EXPECT_EQ(schedule.choose(ms(c.read_ms), c.latest), c.expected) << c.what;
+  const auto late = SensorSchedule::in_free_running(every_33_ms(Duration(0), milliseconds(5)));
+  EXPECT_EQ(late.choose(ms(0), true), (Measurement{0, ms(5), ms(5)})) << "before the phase";
+  const auto on_demand =
+      SensorSchedule::in_free_running(uav::OnDemandTiming{uav::ConstantDelay{milliseconds(98)}});
+  EXPECT_EQ(on_demand.choose(ms(7), false), (Measurement{0, ms(7), ms(7)}));
 }
 
 // Synchronised and in free running; measurement 1 (of 33 ms, available at 43 ms) has been read.
@@ -77,10 +82,11 @@ TEST(SensorSchedule, ReadsIfAvailableDoNotWait) {
   EXPECT_FALSE(schedule.choose_available(ms(75), false));
   EXPECT_EQ(schedule.choose_available(ms(75), true), (Measurement{1, ms(33), ms(43)}));
   EXPECT_EQ(schedule.choose_available(ms(76), false), (Measurement{2, ms(66), ms(76)}));
-  EXPECT_FALSE(schedule.choose_available_free_running(ms(65), false));
-  EXPECT_EQ(schedule.choose_available_free_running(ms(65), true), (Measurement{1, ms(65), ms(65)}));
-  EXPECT_EQ(schedule.choose_available_free_running(ms(66), false),
-            (Measurement{2, ms(66), ms(66)}));
+  SensorSchedule free = SensorSchedule::in_free_running(every_33_ms(milliseconds(10)));
+  free.mark_read({1, ms(33), ms(43)});
+  EXPECT_FALSE(free.choose_available(ms(65), false));
+  EXPECT_EQ(free.choose_available(ms(65), true), (Measurement{1, ms(65), ms(65)}));
+  EXPECT_EQ(free.choose_available(ms(66), false), (Measurement{2, ms(66), ms(66)}));
   EXPECT_FALSE(camera(Duration(0), milliseconds(5)).choose_available(ms(4), true));
 }
 
