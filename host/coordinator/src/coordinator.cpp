@@ -27,14 +27,6 @@ constexpr Duration kFall = std::chrono::seconds(2);
 // How often the record is flushed, so that a killed run leaves most of it.
 constexpr Duration kFlushPeriod = std::chrono::seconds(1);
 
-/// How fast the SUT's clock can run; none if it is the coordinator's own, scripted or counted.
-std::optional<sync::ClockBound> bound_of(const link::Hello& hello, int cores) {
-  if (hello.clock.kind == computer::ClockKind::kWall) return sync::wall_bound(hello.clock.factor);
-  if (hello.clock.kind == computer::ClockKind::kCpu)
-    return sync::cpu_bound(hello.clock.factor, cores);
-  return std::nullopt;
-}
-
 // In free running the state at the next read is not known, and nothing is drawn ahead.
 Sampler::Sensor make_sensor(const sim::Sensor& sensor, const std::string& uav,
                             const uav::SensorTiming& timing, const RunOptions& options) {
@@ -84,9 +76,6 @@ RunOptions checked(RunOptions options, const sim::Simulator& simulator) {
   require(!options.token.empty(), "a token is needed");
   require(options.time_limit > Duration(0), "the time limit must be positive");
   require(options.ground_truth_period > Duration(0), "the ground truth's period must be positive");
-  require(
-      options.policy == sync::SyncPolicy::kConservativeBarrier || options.real_time_factor > 0.0,
-      "free running needs a real-time factor");
   options.ground_truth_period = std::max(options.ground_truth_period, simulator.grid().dt());
   return options;
 }
@@ -115,9 +104,8 @@ Coordinator::Impl::Impl(sim::Simulator& simulator, record::Recorder& recorder, R
       options_(checked(std::move(options), simulator)),
       host_clock_(std::move(host_clock)),
       log_(recorder),
-      barrier_(simulator.grid()),
-      boards_(options_),
-      stepper_(simulator, barrier_, log_, options_.ground_truth_period,
+      times_(options_, simulator.grid()),
+      stepper_(simulator, times_, log_, options_.ground_truth_period,
                make_samplers(simulator, options_)),
       sessions_(make_sessions(world(), options_)),
       uav_names_(names_of_uavs()),
@@ -126,7 +114,7 @@ Coordinator::Impl::Impl(sim::Simulator& simulator, record::Recorder& recorder, R
       started_(host_clock_()),
       flushed_(started_),
       watchdog_({time_limit_, options_.connect_limit, options_.hang_limit}, sessions_.size(),
-                is_synchronised(), started_) {}
+                started_) {}
 
 RunReport Coordinator::Impl::run(link::Server& server, const RunHooks& hooks) {
   server_ = &server;
@@ -159,34 +147,25 @@ void Coordinator::Impl::start() {
   stepper_.reset(options_.seed);
   started_ = host_clock_();
   watchdog_.begin(started_);
-  log_.begin(make_header(), is_repeatable());
+  for (const Session& session : sessions_)
+    times_.begin(session.uav, session.hello, session.cores, started_);
+  log_.begin(make_header(), times_.repeats());
   running_ = true;
   if (options_.real_time_factor > 0.0)
     pace_.emplace(options_.real_time_factor, std::max(kPaceCredit, 2 * grid().dt()), started_);
-  for (Session& session : sessions_) {
-    barrier_.add(ExecTime{},
-                 session.is_concurrent() ? sync::SutKind::kConcurrent : sync::SutKind::kSerial);
-    computes_from(session, ExecTime{});
-    if (session.hello.clock.kind == computer::ClockKind::kUnstamped) {
-      session.timer.emplace(ExecTime{}, started_);
-      unstamped_.push_back(session.uav);
-    }
-    if (const auto bound = bound_of(session.hello, session.cores); bound && is_synchronised())
-      session.plausibility.emplace(*bound, ExecTime{}, started_);
-  }
+  for (Session& session : sessions_) computes_from(session, ExecTime{}, started_);
   stepper_.act();
   log_.race_again();
   next_look_ = started_;
-  for (Session& session : sessions_) session.computes_since = started_;
+  const bool is_free = options_.policy == sync::SyncPolicy::kFreeRunning;
   for (const Session& session : sessions_)
-    server_->send(
-        session.peer,
-        link::Welcome{.catalogue = catalogue_of(session),
-                      .free_running = !is_synchronised(),
-                      .start = ExecTime{},
-                      .computing = time_given(session),
-                      .peers = peers_of(session),
-                      .real_time_factor = is_synchronised() ? 1.0 : options_.real_time_factor});
+    server_->send(session.peer,
+                  link::Welcome{.catalogue = catalogue_of(session),
+                                .free_running = is_free,
+                                .start = ExecTime{},
+                                .computing = time_given(session),
+                                .peers = peers_of(session),
+                                .real_time_factor = is_free ? options_.real_time_factor : 1.0});
 }
 
 uav::Catalogue Coordinator::Impl::catalogue_of(const Session& session) const {
@@ -197,17 +176,10 @@ uav::Catalogue Coordinator::Impl::catalogue_of(const Session& session) const {
   return catalogue;
 }
 
-// Whether every run with these options has the same messages: no clock has a part in them.
-bool Coordinator::Impl::is_repeatable() const {
-  return is_synchronised() && std::ranges::all_of(sessions_, [](const Session& session) {
-           return !session.is_concurrent() && session.hello.clock.repeats();
-         });
-}
-
 // Advances ST; false if it must not advance now.
 bool Coordinator::Impl::advance() {
   const WallTime now = host_clock_();
-  read_timers(now);
+  times_.read_timers(now);
   release_ready();
   const SimTime target = paced(next_stop(), now);
   if (target <= st()) return false;
@@ -231,17 +203,10 @@ void Coordinator::Impl::watch_batteries() {
   if (st() >= *fallen_at_) end({RunEnd::kBatteryEmpty, fall_});
 }
 
-// The time of an unstamped client that computes may let ST advance for another SUT.
-void Coordinator::Impl::read_timers(WallTime now) {
-  for (const std::size_t uav : unstamped_)
-    if (is_computing(sessions_[uav])) barrier_.progress(uav, sessions_[uav].timer->read(now));
-}
-
 // How far ST may advance in this turn.
 SimTime Coordinator::Impl::next_stop() const {
-  const SimTime bound = is_synchronised() ? barrier_.lower_bound() : SimTime::max();
-  return std::min({bound, time_limit_, fallen_at_.value_or(SimTime::max()), stepper_.next_due(),
-                   next_radio(), next_wake(), st() + kStepsPerTurn * grid().dt()});
+  return std::min({times_.limit(), time_limit_, fallen_at_.value_or(SimTime::max()),
+                   stepper_.next_due(), next_radio(), st() + kStepsPerTurn * grid().dt()});
 }
 
 // How much of that the pace allows.
@@ -270,7 +235,7 @@ void Coordinator::Impl::watch() {
   }
   for (Session& session : sessions_) {
     if (!session.joined()) hear_emulated_start(session, now);
-    if (!session.joined() || session.left) continue;
+    if (!session.joined() || time_of(session).has_left()) continue;
     const std::uint64_t moved = server_->moved_bytes(session.peer);
     if (std::exchange(session.moved_bytes, moved) != moved) watchdog_.heard(session.uav, now);
     if (!hooks_.computed_by || session.hello.clock.kind != computer::ClockKind::kCounted) continue;
@@ -295,16 +260,14 @@ void Coordinator::Impl::hear_emulated_start(Session& session, WallTime now) {
 // whatever it requests next is too late, and ST advances to that limit.
 void Coordinator::Impl::end_endless(Session& session) {
   constexpr Duration kMostUncharged = std::chrono::seconds(1);  // of the library, around a reply
-  if (!running_) return;
-  const ExecTime bound = session.resumed_at;
-  if (std::exchange(session.last_bound, bound) != bound || !is_computing(session))
+  Timeline& time = time_of(session);
+  const ExecTime bound = time.resumed_at();
+  if (std::exchange(session.last_bound, bound) != bound || !time.is_computing())
     session.computed_before = session.computed;
   const auto limit = from_ns<ExecTime>(to_ns(time_limit_));
   const Duration computed = session.computed - session.computed_before - kMostUncharged;
-  if (!is_computing(session) || bound >= limit || computed <= limit - bound) return;
-  if (!boards_.shares(session.uav)) return barrier_.progress(session.uav, limit);
-  boards_.progress(session.uav, limit - bound);
-  release_ready();
+  if (time.is_computing() && bound < limit && computed > limit - bound)
+    time.progress({.reached = limit});
 }
 
 void Coordinator::Impl::stop_if_asked() {
@@ -312,19 +275,12 @@ void Coordinator::Impl::stop_if_asked() {
   if (const auto stop = hooks_.should_stop()) end(*stop);
 }
 
-// Whether the coordinator waits for the next message of the SUT.
-bool Coordinator::Impl::is_computing(const Session& session) const {
-  if (!running_ || session.left) return false;
-  if (boards_.has_request(session.uav)) return false;
-  return is_synchronised() ? !barrier_.is_held(session.uav) : session.open.empty();
-}
-
 Party Coordinator::Impl::party(const Session& session, WallTime now) const {
   Party party{.sut = session.hello.sut,
               .uav = session.uav_name,
               .joined = session.joined(),
-              .computing = is_computing(session),
-              .bound = running_ ? barrier_.bound(session.uav) : ExecTime{},
+              .computing = time_of(session).is_computing(),
+              .bound = time_of(session).et(),
               .silence = watchdog_.silence(session.uav, now),
               .counted = session.hello.clock.kind == computer::ClockKind::kCounted,
               .received_bytes = session.received_bytes,
@@ -350,15 +306,15 @@ RunStatus Coordinator::Impl::status(WallTime now) const {
                    .blocked = ended_ ? "" : watchdog_.blocked(parties(now), st(), now)};
   for (const Session& session : sessions_)
     if (session.joined()) ++status.joined;
-  if (!running_ || !is_synchronised()) return status;
-  const Session* slowest = nullptr;
+  ExecTime least = ExecTime::max();
   for (const Session& session : sessions_) {
-    const ExecTime bound = barrier_.bound(session.uav);
-    status.et = std::max(status.et.value_or(ExecTime{}), bound);
-    if (is_computing(session) && (!slowest || bound < barrier_.bound(slowest->uav)))
-      slowest = &session;
+    const auto et = time_of(session).et();
+    if (!et) continue;
+    status.et = std::max(status.et.value_or(*et), *et);
+    if (!time_of(session).is_computing() || *et >= least) continue;
+    least = *et;
+    status.waiting_for = session.uav_name;
   }
-  if (slowest) status.waiting_for = slowest->uav_name;
   return status;
 }
 
@@ -383,12 +339,12 @@ RunReport Coordinator::Impl::close_run() {
       .largest_overshoot = footer.largest_overshoot,
       .suts = {}};
   for (const Session& session : sessions_) {
-    if (session.joined() && !session.left)
+    if (session.joined() && !time_of(session).has_left())
       refuse(session.peer, link::Refusal::Reason::kRunEnded, "the run has ended: " + report.reason);
     report.suts.push_back({.uav = session.uav_name,
                            .sut = session.hello.sut,
                            .finish = session.finish,
-                           .et = running_ ? barrier_.bound(session.uav) : ExecTime{},
+                           .et = time_of(session).bound(),
                            .looks = session.looks});
   }
   if (!running_) return report;

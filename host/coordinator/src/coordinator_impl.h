@@ -2,8 +2,8 @@
 
 #include "run_log.h"
 #include "session.h"
-#include "shared_boards.h"
 #include "stepper.h"
+#include "time/timelines.h"
 #include "watchdog.h"
 
 #include <map>
@@ -22,18 +22,18 @@ namespace tether::coordinator {
 /// decisions are made by its parts:
 ///
 ///     validator    whether a message of a SUT is allowed
-///     SharedBoards at which instant of its virtual board a SUT has sent a request
-///     barrier      which replies are held until when, and how far ST may advance
+///     Timelines    when a SUT sent a request, which replies are held until when, and how far ST
+///                  may advance
 ///     Medium       when a message between UAVs arrives, or why it is lost
 ///     Stepper      what is due at each boundary; its Samplers: what sensors sample, and when
 ///     Watchdog     whether the run takes too long, and who is blocked on whom
 ///     RunLog       what the record has of all this, and in which order
 ///
 /// looks.cpp watches what the threads of SUTs do meanwhile, which nothing else depends on.
-/// A request passes them in this order: it is validated; on a shared board, it waits until its
-/// instant is known (settle_boards); it is planned (accept) and held by the barrier; ST advances to
-/// its reply's timestamp; release_ready sends the reply and logs the interaction. A message between
-/// UAVs that arrives meanwhile can move a reply to an earlier instant (promise).
+/// A request passes them in this order: it is validated; it may wait until its instant is known
+/// (settle); it is planned (accept) and held by its Timeline; ST advances to its reply's timestamp;
+/// release_ready sends the reply and logs the interaction. A message between UAVs that arrives
+/// meanwhile can move a reply to an earlier instant (promise).
 class Coordinator::Impl {
  public:
   Impl(sim::Simulator& simulator, record::Recorder& recorder, RunOptions options,
@@ -47,14 +47,11 @@ class Coordinator::Impl {
   void start();
   record::Header make_header() const;
   uav::Catalogue catalogue_of(const Session& session) const;
-  bool is_repeatable() const;
   bool advance();
   SimTime next_stop() const;
   void watch_batteries();
   SimTime paced(SimTime target, WallTime now);
-  void read_timers(WallTime now);
   void watch();
-  bool is_computing(const Session& session) const;
   bool awaits_only_confirmation(const Session& session) const;
   Party party(const Session& session, WallTime now) const;
   std::vector<Party> parties(WallTime now) const;
@@ -79,19 +76,15 @@ class Coordinator::Impl {
   void on_request(Session& session, const link::Request& request, WallTime now);
   void on_progress(Session& session, const link::Progress& progress, WallTime now);
   void on_annotation(Session& session, const link::Annotation& note);
-  void on_stop(Session& session, const link::Progress& stop, WallTime now);
-  static std::optional<ExecTime> earliest_due(const Session& session, const link::Progress& stop);
   void on_refusal(Session& session, const link::Refusal& refusal);
   void check_replay(Session& session, const link::Request& request);
   void break_off(Session& session, link::Refusal::Reason reason, const Fault& fault);
   Standing standing(const Session& session) const;
-  static Duration own_work(Session& session, ExecTime stamp);
   bool settle_boards();
-  bool settle_pool(std::size_t pool);
-  ExecTime undisturbed_until(std::size_t pool) const;
-  void begin(Session& session, const Arrived& arrived);
-  record::Interaction make_entry(const Session& session, const Arrived& arrived) const;
-  ExecTime charge(Session& session, const Arrived& arrived, record::Interaction& entry);
+  static record::Annotation annotation_of(const Session& session, const Sent& sent);
+  void begin(Sent sent);
+  record::Interaction make_entry(const Session& session, const Sent& sent) const;
+  ExecTime charge(const Sent& sent, record::Interaction& entry);
   ExecTime accept(Session& session, PendingInteraction& pending);
   ExecTime accept_read(Session& session, PendingInteraction& pending, const link::ReadSensor& read);
   ExecTime accept_command(Session& session, PendingInteraction& pending,
@@ -122,21 +115,14 @@ class Coordinator::Impl {
   // Outgoing.
   void release_ready();
   void settle();
-  void answer_free_running();
-  std::optional<SimTime> waits_until(const PendingInteraction& pending) const;
-  SimTime next_wake() const;
   void reply(Session& session, std::size_t open_index, SimTime st);
   void leave(Session& session);
-  void computes_from(Session& session, ExecTime at);
+  void computes_from(Session& session, ExecTime at, WallTime since);
   std::optional<uav::CameraSample> image_to_record(Session& session, const link::Request& request,
                                                    const link::Reply& reply) const;
 
-  bool is_synchronised() const { return options_.policy == sync::SyncPolicy::kConservativeBarrier; }
-  /// Its SUT shares a real board, so all of its threads have to stop with those of the others.
-  bool stops_with_others(std::size_t uav) const {
-    const auto& board = options_.uavs[uav].board;
-    return is_synchronised() && board && options_.boards[*board].is_real;
-  }
+  Timeline& time_of(const Session& session) { return times_[session.uav]; }
+  const Timeline& time_of(const Session& session) const { return times_[session.uav]; }
   const sim::World& world() const { return simulator_->world(); }
   const StepGrid& grid() const { return stepper_.grid(); }
   SimTime st() const { return stepper_.st(); }
@@ -149,12 +135,10 @@ class Coordinator::Impl {
   std::map<link::PeerId, std::string> remote_;  // address of each connection
 
   RunLog log_;
-  sync::BarrierSynchronizer barrier_;
-  SharedBoards boards_;
+  Timelines times_;
   Stepper stepper_;
   std::vector<Session> sessions_;               // one per UAV, in the world's order
   std::map<link::PeerId, std::size_t> joined_;  // index of the session of each SUT
-  std::vector<std::size_t> unstamped_;          // indices of those that the coordinator times
   std::vector<std::string> uav_names_;
   radio::Medium medium_;
   std::vector<radio::Arrival> arrivals_;  // of one event

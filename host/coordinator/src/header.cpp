@@ -119,8 +119,8 @@ record::Header Coordinator::Impl::make_header() const {
          .sut = session.hello.sut,
          .clock = session.hello.clock,
          .command_latency = session.command_latency,
-         .concurrent = session.is_concurrent(),
-         .cores = session.hello.clock.kind == computer::ClockKind::kCpu ? session.cores : 0,
+         .concurrent = session.hello.concurrent,
+         .cores = session.hello.clock.adds_up_cores() ? session.cores : 0,
          .max_acceleration_m_s2 = max_acceleration_m_s2(uav.airframe, world().gravity_m_s2),
          .required_clock = options_.uavs[session.uav].clock,
          .build_id = session.hello.build_id,
@@ -131,7 +131,7 @@ record::Header Coordinator::Impl::make_header() const {
          .extent_m = extent_m(uav.body),
          .max_angular_acceleration_rad_s2 = max_angular_acceleration_rad_s2(uav.airframe),
          .energy = describe_energy(uav, world().gravity_m_s2)});
-    if (boards_.shares(session.uav) || stops_with_others(session.uav)) {
+    if (time_of(session).facts().shares_board) {
       header.suts.back().board = options_.boards[*options_.uavs[session.uav].board].name;
       header.suts.back().pinned_core = options_.uavs[session.uav].pinned_core;
     }

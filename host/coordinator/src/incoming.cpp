@@ -51,7 +51,7 @@ void Coordinator::Impl::on_message(link::PeerId peer, const link::Message& messa
     return join(peer, *hello);
   if (!session)
     return refuse(peer, link::Refusal::Reason::kBadMessage, "the first message must be a Hello");
-  if (session->left) return;
+  if (time_of(*session).has_left()) return;
   const WallTime now = host_clock_();
   if (shows_life(message, standing(*session), session->hello.clock.kind))
     watchdog_.heard(session->uav, now);
@@ -72,7 +72,7 @@ void Coordinator::Impl::on_message(link::PeerId peer, const link::Message& messa
 void Coordinator::Impl::on_refusal(Session& session, const link::Refusal& refusal) {
   server_->close(session.peer);
   remote_.erase(session.peer);
-  session.left = true;
+  time_of(session).leave();
   end({RunEnd::kSutLost, fmt::format("the SUT of UAV \"{}\" ended the run: {}", session.uav_name,
                                      printable(refusal.message))});
 }
@@ -81,7 +81,7 @@ void Coordinator::Impl::on_refusal(Session& session, const link::Refusal& refusa
 void Coordinator::Impl::break_off(Session& session, link::Refusal::Reason reason,
                                   const Fault& fault) {
   refuse(session.peer, reason, fault.what);
-  session.left = true;
+  time_of(session).leave();
   end({RunEnd::kSutLost,
        fmt::format("the SUT of UAV \"{}\" sent {}", session.uav_name, fault.what)});
 }
@@ -89,8 +89,9 @@ void Coordinator::Impl::break_off(Session& session, link::Refusal::Reason reason
 // Its Finish has arrived, and it is stopped. Nothing that it still does can change the result, so
 // it may disconnect before or after ST has caught up.
 bool Coordinator::Impl::awaits_only_confirmation(const Session& session) const {
-  if (boards_.has_finish(session.uav)) return true;
-  return session.finish && !is_computing(session);
+  const link::Request* next = time_of(session).unsettled();
+  if (next && std::holds_alternative<link::Finish>(next->body)) return true;
+  return session.finish && !time_of(session).is_computing();
 }
 
 void Coordinator::Impl::on_closed(link::PeerId peer, const Failure& failure) {
@@ -98,10 +99,10 @@ void Coordinator::Impl::on_closed(link::PeerId peer, const Failure& failure) {
   if (!session && hooks_.on_refused && failure.kind != Failure::Kind::kDisconnected)
     hooks_.on_refused(remote_[peer], failure.message);
   remote_.erase(peer);
-  if (!session || session->left) return;
+  if (!session || time_of(*session).has_left()) return;
   if (failure.kind == Failure::Kind::kDisconnected && awaits_only_confirmation(*session)) return;
-  const std::string where =
-      running_ && is_synchronised() ? describe_state(party(*session, host_clock_())) + "; " : "";
+  const Party lost = party(*session, host_clock_());
+  const std::string where = lost.bound ? describe_state(lost) + "; " : "";
   end({RunEnd::kSutLost, fmt::format("lost the SUT of UAV \"{}\"", session->uav_name),
        where + failure.message});
 }
@@ -116,10 +117,8 @@ void Coordinator::Impl::join(link::PeerId peer, const link::Hello& hello) {
   Session& session = sessions_[std::get<std::size_t>(admitted)];
   if (const auto fault = clock_fault(hello, options_.uavs[session.uav].clock))
     return refuse(peer, link::Refusal::Reason::kBadRequest, *fault);
-  if (!hello.concurrent && stops_with_others(session.uav))
-    return refuse(peer, link::Refusal::Reason::kBadRequest,
-                  "the SUT shares its board with others, so it must be stopped together with them: "
-                  "start all of them under tether-exec --group");
+  if (const auto fault = times_.fault_of(session.uav, hello))
+    return refuse(peer, link::Refusal::Reason::kBadRequest, *fault);
   if (const auto fault = build_fault(hello, session.replay))
     return refuse(peer, link::Refusal::Reason::kBadRequest, *fault);
   session.peer = peer;
@@ -134,81 +133,48 @@ void Coordinator::Impl::join(link::PeerId peer, const link::Hello& hello) {
 
 void Coordinator::Impl::on_progress(Session& session, const link::Progress& progress,
                                     WallTime now) {
-  if (!running_ || !is_synchronised() || !is_stamp(progress.reached)) return;
-  if (session.timer) return;  // its time is the coordinator's, not the client's
+  if (!running_ || !is_stamp(progress.reached)) return;
   if (const auto fault = fault_of(progress, standing(session), now))
     return break_off(session, link::Refusal::Reason::kBadMessage, *fault);
-  if (progress.stopped) return on_stop(session, progress, now);
-  if (boards_.shares(session.uav)) {
-    if (!is_computing(session)) return;
-    boards_.progress(session.uav, own_work(session, progress.reached));
-  } else {
-    barrier_.progress(session.uav, progress.reached);
-  }
+  if (const auto stop = time_of(session).progress(progress))
+    log_.stop(st(), {session.uav_name, stop->at, stop->due, now});
   release_ready();
 }
 
 void Coordinator::Impl::on_annotation(Session& session, const link::Annotation& note) {
   if (const auto fault = session.annotations.spend(note))
     return break_off(session, link::Refusal::Reason::kBadMessage, *fault);
-  if (boards_.shares(session.uav) && is_computing(session)) {
-    boards_.add(session.uav, {note, own_work(session, note.at), st(), host_clock_()});
-    return release_ready();
-  }
-  log_.annotation(st(), {session.uav_name, note.at, note.topic, note.json});
-}
-
-// The timestamp of the reply that caused a stop. No reply is sent before the SUT has stopped for
-// it, so it is one of the open calls that are due, and that the SUT knew to be due.
-std::optional<ExecTime> Coordinator::Impl::earliest_due(const Session& session,
-                                                        const link::Progress& stop) {
-  std::optional<ExecTime> earliest;
-  for (const PendingInteraction& pending : session.open)
-    if (const ExecTime reply_at = pending.entry.reply_at;
-        reply_at <= stop.reached && pending.moved_due <= stop.dues_heard)
-      earliest = std::min(earliest.value_or(reply_at), reply_at);
-  return earliest;
-}
-
-// A concurrent SUT is stopped: replies that are due by then can be sent. It reports the same stop
-// again if a message has moved up the reply that it waits for.
-void Coordinator::Impl::on_stop(Session& session, const link::Progress& stop, WallTime now) {
-  const ExecTime at = stop.reached;
-  if (std::exchange(session.stopped_at, at) != at)
-    log_.stop(st(), {session.uav_name, at, earliest_due(session, stop), now});
-  barrier_.stop(session.uav, at, stop.dues_heard >= session.newest_moved_due);
+  if (const auto sent = time_of(session).send({note, st(), WallTime{}, session.uav}))
+    return log_.annotation(st(), annotation_of(session, *sent));
   release_ready();
 }
 
 Standing Coordinator::Impl::standing(const Session& session) const {
-  const bool adds_up_cores = session.hello.clock.kind == computer::ClockKind::kCpu;
+  const Timeline& time = time_of(session);
   const int cores = session.cores > 0 ? session.cores : sync::kMostCores;
   return {.running = running_,
-          .synchronised = is_synchronised(),
-          .concurrent = session.is_concurrent(),
+          .concurrent = session.hello.concurrent,
           .finished = session.finish.has_value(),
-          .held = running_ && barrier_.is_held(session.uav),
-          .bound = boards_.shares(session.uav) ? session.own_bound
-                   : running_                  ? barrier_.bound(session.uav)
-                                               : ExecTime{},
-          .open_calls = session.open.size() + (boards_.has_request(session.uav) ? 1U : 0U),
+          .held = time.is_held(),
+          .bound = time.et() ? std::optional(time.last_stamp()) : std::nullopt,
+          .open_calls = session.open.size() + (time.unsettled() ? 1U : 0U),
           .received_bytes = session.received_bytes,
           .next_sequence = session.next_sequence,
           .st = st(),
-          .calls_in_step = st() > session.called_at ? 0 : session.calls_in_step,
+          .calls_in_step = time.calls_at(st()),
           .waiting_commands = stepper_.waiting_commands(session.uav),
           .uavs = uav_names_,
           .uav = session.uav,
           .sensors = stepper_.sampler(session.uav),
           .has_battery = stepper_.has_battery(session.uav),
-          .plausibility = session.plausibility ? &*session.plausibility : nullptr,
-          .clock_cores = adds_up_cores ? cores : 0};
+          .plausibility = time.plausibility(),
+          .clock_cores = session.hello.clock.adds_up_cores() ? cores : 0};
 }
 
 void Coordinator::Impl::on_request(Session& session, const link::Request& request, WallTime now) {
   // The Finish of one thread ends a concurrent SUT; later requests of its other threads are
   // dropped.
-  if (session.is_concurrent() && session.finish) return;
+  if (session.hello.concurrent && session.finish) return;
   if (const auto fault = fault_of(request, standing(session), now))
     return break_off(session, link::Refusal::Reason::kBadRequest, *fault);
   if (const auto* send = std::get_if<link::SendMessage>(&request.body))
@@ -217,75 +183,34 @@ void Coordinator::Impl::on_request(Session& session, const link::Request& reques
   if (session.replay) check_replay(session, request);
   if (ended_) return;
   ++session.next_sequence;
-  if (boards_.shares(session.uav)) {
-    boards_.add(session.uav, {request, own_work(session, request.issued_at), st(), now});
-  } else {
-    begin(session, {request, st(), now});
+  if (auto sent = time_of(session).send({request, st(), now, session.uav})) {
+    begin(std::move(*sent));
     stepper_.act();
   }
   release_ready();
 }
 
-// What a SUT on a shared board computed until `stamp`, as if alone. Not less than before.
-Duration Coordinator::Impl::own_work(Session& session, ExecTime stamp) {
-  session.own_bound = std::max(session.own_bound, stamp);
-  return session.own_bound - session.resumed_at;
-}
-
-// Handles the messages whose instant is known now, and tells the barrier how far the boards are.
-// Whether anything has changed: another pool may go on then, or a message arrive.
+// Handles the messages whose instant is known only now.
 bool Coordinator::Impl::settle_boards() {
-  bool has_changed = false;
-  for (std::size_t pool = 0; pool < boards_.pools(); ++pool)
-    has_changed = settle_pool(pool) || has_changed;
+  const bool has_changed =
+      times_.settle([this] { return next_arrival(); },
+                    [this](std::size_t uav, ExecTime from, ExecTime to, double cores) {
+                      stepper_.computes(uav, same_instant(from), same_instant(to), cores);
+                    },
+                    [this](Sent sent) {
+                      Session& session = sessions_[sent.uav];
+                      if (std::holds_alternative<link::Annotation>(sent.message))
+                        session.notes.push_back(annotation_of(session, sent));
+                      else
+                        begin(std::move(sent));
+                    });
   if (has_changed) stepper_.act();
   return has_changed;
 }
 
-bool Coordinator::Impl::settle_pool(std::size_t pool) {
-  const auto used = [this](std::size_t uav, ExecTime from, ExecTime to, double cores) {
-    stepper_.computes(uav, same_instant(from), same_instant(to), cores);
-  };
-  bool has_changed = false;
-  while (const auto sent = boards_.next(pool, undisturbed_until(pool), used)) {
-    has_changed = true;
-    Session& session = sessions_[sent->uav];
-    if (const auto* note = std::get_if<link::Annotation>(&sent->what.message)) {
-      session.notes.push_back({session.uav_name, sent->at, note->topic, note->json});
-      continue;
-    }
-    const auto& request = std::get<link::Request>(sent->what.message);
-    begin(session, {request, sent->what.st, sent->what.wall, sent->at, sent->what.work});
-    if (session.finish)
-      boards_.leave(sent->uav);
-    else
-      boards_.resume(sent->uav, session.open.back().entry.reply_at);
-  }
-  for (const std::size_t uav : boards_.suts_of(pool)) {
-    const ExecTime before = barrier_.bound(uav);
-    barrier_.progress(uav, boards_.bound(uav));
-    has_changed = has_changed || barrier_.bound(uav) != before;
-  }
-  return has_changed;
-}
-
-// Until when no message from outside can end the wait of a SUT of the pool: when the next one may
-// arrive, or be sent and arrive. What the pool's own SUTs send is known at their stamps, beyond
-// which its time line does not go on before that is handled.
-ExecTime Coordinator::Impl::undisturbed_until(std::size_t pool) const {
-  const auto is_open = [](const PendingInteraction& pending) {
-    return pending.entry.receive_until && !pending.is_promised;
-  };
-  ExecTime until = ExecTime::max();
-  const bool receives = std::ranges::any_of(boards_.suts_of(pool), [&](std::size_t uav) {
-    return std::ranges::any_of(sessions_[uav].open, is_open);
-  });
-  if (!receives) return until;
-  if (const auto next = next_arrival()) until = next->at;
-  for (const Session& other : sessions_)
-    if (!other.left && !boards_.is_in(pool, other.uav))
-      until = std::min(until, barrier_.bound(other.uav) + radio::least_delay(options_.radio));
-  return until;
+record::Annotation Coordinator::Impl::annotation_of(const Session& session, const Sent& sent) {
+  const auto& note = std::get<link::Annotation>(sent.message);
+  return {session.uav_name, sent.at, note.topic, note.json};
 }
 
 // The SUT does what it did when its time was recorded. Its timestamp follows from the time given.
@@ -293,7 +218,7 @@ void Coordinator::Impl::check_replay(Session& session, const link::Request& requ
   const auto* read = std::get_if<link::ReadSensor>(&request.body);
   const std::string call =
       read ? stepper_.sampler(session.uav).name(read->sensor) : kKinds[request.body.index()];
-  ExecTime due = session.resumed_at;
+  ExecTime due = time_of(session).resumed_at();
   for (const link::StageTime& time : request.stages) due += time.computing;
   std::optional<std::string> difference = session.replay->take(call, request.stages);
   if (!difference && due != request.issued_at)
@@ -301,7 +226,7 @@ void Coordinator::Impl::check_replay(Session& session, const link::Request& requ
                              to_ns(request.issued_at), to_ns(due));
   if (!difference) return;
   refuse(session.peer, link::Refusal::Reason::kBadRequest, *difference);
-  session.left = true;
+  time_of(session).leave();
   end({RunEnd::kTimingDiffers,
        fmt::format("the SUT of UAV \"{}\" differs from the timing file at {}", session.uav_name,
                    *difference)});
@@ -311,65 +236,47 @@ std::vector<link::StageTime> Coordinator::Impl::time_given(const Session& sessio
   return session.replay ? session.replay->given() : std::vector<link::StageTime>();
 }
 
-// Plans a request and holds its reply. A concurrent SUT receives the time of its reply at once, so
-// that its other threads can run until then.
-void Coordinator::Impl::begin(Session& session, const Arrived& arrived) {
-  PendingInteraction pending{.request = arrived.request, .entry = make_entry(session, arrived)};
+// Plans a request and holds its reply.
+void Coordinator::Impl::begin(Sent sent) {
+  Session& session = sessions_[sent.uav];
+  PendingInteraction pending{.entry = make_entry(session, sent)};
   record::Interaction& entry = pending.entry;
-  entry.request_at = charge(session, arrived, entry);
+  entry.request_at = charge(sent, entry);
+  pending.request = std::get<link::Request>(std::move(sent.message));
   stepper_.ends_computing(session.uav, same_instant(entry.request_at));
-  session.calls_in_step = st() > session.called_at ? 1 : session.calls_in_step + 1;
-  session.called_at = st();
   entry.reply_at = accept(session, pending);
-  if (is_synchronised()) {
-    const bool receives = entry.kind == record::kReceive;
-    barrier_.hold({session.uav, entry.reply_at, entry.sequence,
-                   receives ? std::optional(radio::least_delay(options_.radio)) : std::nullopt});
-    if (session.is_concurrent()) {
-      ++session.dues_sent;
-      server_->send(session.peer, link::Due{entry.sequence, entry.reply_at});
-    }
-  }
+  if (const auto due = time_of(session).hold(entry)) server_->send(session.peer, *due);
   session.open.push_back(std::move(pending));
 }
 
-record::Interaction Coordinator::Impl::make_entry(const Session& session,
-                                                  const Arrived& arrived) const {
-  const link::Request& request = arrived.request;
+record::Interaction Coordinator::Impl::make_entry(const Session& session, const Sent& sent) const {
+  const auto& request = std::get<link::Request>(sent.message);
+  const Timeline& time = time_of(session);
   record::Interaction entry;
   entry.uav = session.uav_name;
   entry.sequence = request.sequence;
   entry.kind = kKinds[request.body.index()];
-  entry.st_at_arrival = arrived.st;
-  entry.wall_at_arrival = arrived.wall;
-  entry.computed = arrived.computed;
-  entry.stamped = !session.timer && is_synchronised();
+  entry.st_at_arrival = sent.st;
+  entry.wall_at_arrival = sent.wall;
+  entry.computed = sent.work;
+  entry.stamped = time.facts().is_stamped;
   if (entry.stamped)
-    for (const link::StageTime& time : request.stages)
-      entry.stages.push_back({.stage = printable(time.stage),
-                              .computing = time.computing,
-                              .is_unknown = session.replay && !session.replay->knows(time.stage)});
-  // Not for several threads: their calls overlap, so the last hold may belong to another call.
-  if (!session.is_concurrent() && request.previous_round_trip > Duration(0) &&
-      session.last_hold > Duration(0))
-    entry.previous_link_time = request.previous_round_trip - session.last_hold;
+    for (const auto& [stage, computing] : request.stages)
+      entry.stages.push_back({.stage = printable(stage),
+                              .computing = computing,
+                              .is_unknown = session.replay && !session.replay->knows(stage)});
+  if (request.previous_round_trip > Duration(0) && time.last_hold() > Duration(0))
+    entry.previous_link_time = request.previous_round_trip - time.last_hold();
   return entry;
 }
 
-// The timestamp of a request: the SUT's, or the coordinator's timer for an unstamped client, or ST
-// in free running.
-ExecTime Coordinator::Impl::charge(Session& session, const Arrived& arrived,
-                                   record::Interaction& entry) {
-  if (!is_synchronised()) return same_instant(st());
-  const ExecTime stamp = session.timer ? session.timer->pause(arrived.wall)
-                                       : arrived.sent_at.value_or(arrived.request.issued_at);
-  const sync::Arrival arrival = barrier_.arrive(session.uav, stamp, arrived.st);
+// The timestamp of a request.
+ExecTime Coordinator::Impl::charge(const Sent& sent, record::Interaction& entry) {
+  const sync::Arrival arrival = times_[sent.uav].arrive(sent);
   entry.lag = arrival.lag;
-  Duration behind = arrival.violation ? arrival.violation->size : Duration(0);
-  if (arrived.computed) behind = session.resumed_at + *arrived.computed - arrived.request.issued_at;
-  if (behind > Duration(0))
-    entry.violation = fmt::format(
-        "{} by {} ns", name(sync::CausalityViolation::Kind::kRequestInThePast), behind.count());
+  if (arrival.violation)
+    entry.violation =
+        fmt::format("{} by {} ns", name(arrival.violation->kind), arrival.violation->size.count());
   return arrival.charged_at;
 }
 

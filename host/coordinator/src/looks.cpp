@@ -41,8 +41,9 @@ Duration Coordinator::Impl::until_look() const {
 }
 
 bool Coordinator::Impl::is_looked_at(const Session& session) const {
-  return hooks_.threads_of && is_synchronised() && is_computing(session) && !session.is_hidden &&
-         !session.is_concurrent() && !session.hello.clock.counts_waiting_as_it_is();
+  const Timeline& time = time_of(session);
+  return hooks_.threads_of && time.facts().may_wait_unseen && time.is_computing() &&
+         !session.is_hidden;
 }
 
 // What a SUT does is known only if it has sent nothing by then: it may have been looked at while it

@@ -9,14 +9,14 @@ namespace tether::coordinator {
 
 void Coordinator::Impl::release_ready() {
   settle();
-  if (!is_synchronised()) return answer_free_running();
   // Other threads draw ahead: while one picture is drawn for its reply, those of other SUTs, and
   // while the SUTs compute, what they will read.
   if (sessions_.size() > 1) stepper_.announce();
-  while (const auto grant = barrier_.release(st(), next_arrival())) {
+  while (const auto grant = times_.release(st(), next_arrival())) {
     Session& session = sessions_[grant->sut];
     std::size_t i = 0;
     while (session.open[i].entry.sequence != grant->call) ++i;
+    session.open[i].entry.reply_at = grant->resume_at;
     reply(session, i, grant->released_at);
     settle();
   }
@@ -28,40 +28,6 @@ void Coordinator::Impl::release_ready() {
 void Coordinator::Impl::settle() {
   do settle_radio();
   while (settle_boards());
-}
-
-// In free running: when a sleep or a receive ends, unless a message has arrived.
-std::optional<SimTime> Coordinator::Impl::waits_until(const PendingInteraction& pending) const {
-  const record::Interaction& entry = pending.entry;
-  if (pending.is_promised || !(entry.receive_until || entry.sleep_until)) return std::nullopt;
-  return grid().ceil(same_instant(entry.receive_until ? *entry.receive_until : *entry.sleep_until));
-}
-
-// In free running, how far ST may advance before one of these ends.
-SimTime Coordinator::Impl::next_wake() const {
-  SimTime due = SimTime::max();
-  if (is_synchronised()) return due;
-  for (const Session& session : sessions_)
-    for (const PendingInteraction& pending : session.open)
-      due = std::min(due, waits_until(pending).value_or(due));
-  return due;
-}
-
-// In free running, only what waits in ST is not answered at once: sleeps, receives, and reads that
-// wait for the next measurement of their sensor.
-void Coordinator::Impl::answer_free_running() {
-  for (Session& session : sessions_) {
-    for (std::size_t i = 0; i < session.open.size();) {
-      PendingInteraction& pending = session.open[i];
-      const Sampler::Read* read = stepper_.sampler(session.uav).find(pending.entry.sequence);
-      if (waits_until(pending) > st() || (read && !read->state)) {
-        ++i;
-        continue;
-      }
-      pending.entry.reply_at = same_instant(st());
-      reply(session, i, st());
-    }
-  }
 }
 
 // Sends the reply before it is recorded, so that recording costs the SUT no wall time.
@@ -84,19 +50,11 @@ void Coordinator::Impl::reply(Session& session, std::size_t open_index, SimTime 
   server_->send(session.peer, std::move(message));
   session.received_bytes = 0;
 
-  session.last_hold = entry.wall_at_release - entry.wall_at_arrival;
   watchdog_.heard(session.uav, entry.wall_at_release);
   watchdog_.moved(entry.wall_at_release);
-  computes_from(session, entry.reply_at);
-  session.computes_since = entry.wall_at_release;
+  time_of(session).replied(entry);
+  computes_from(session, entry.reply_at, entry.wall_at_release);
   session.waited_before = session.looks.waiting;
-  if (session.timer) session.timer->resume(entry.wall_at_release, entry.reply_at);
-  // A CPU clock adds what child processes computed during the call.
-  if (session.plausibility)
-    session.plausibility->go_on(barrier_.bound(session.uav),
-                                session.hello.clock.kind == computer::ClockKind::kCpu
-                                    ? entry.wall_at_arrival
-                                    : entry.wall_at_release);
   for (record::Annotation& note : session.notes) log_.annotation(st, std::move(note));
   session.notes.clear();
   const bool is_last = entry.kind == record::kFinish;
@@ -119,21 +77,20 @@ std::optional<uav::CameraSample> Coordinator::Impl::image_to_record(
 
 // What the threads of a concurrent SUT compute while others wait is not known; what a SUT on a
 // shared board computes, its board's time line knows.
-void Coordinator::Impl::computes_from(Session& session, ExecTime at) {
-  session.resumed_at = session.own_bound = at;
-  if (!session.is_concurrent() && !boards_.shares(session.uav))
+void Coordinator::Impl::computes_from(Session& session, ExecTime at, WallTime since) {
+  session.computes_since = since;
+  if (time_of(session).facts().loads_one_core())
     stepper_.begins_computing(session.uav, same_instant(at));
 }
 
 // Drops the other open calls of a concurrent SUT.
 void Coordinator::Impl::leave(Session& session) {
-  session.left = true;
+  time_of(session).leave();
   session.open.clear();
   stepper_.close(session.uav);
   stepper_.ends_computing(session.uav, st());
-  barrier_.remove(session.uav);
   server_->close(session.peer);
-  if (std::all_of(sessions_.begin(), sessions_.end(), [](const Session& s) { return s.left; }))
+  if (std::ranges::all_of(sessions_, [&](const Session& s) { return time_of(s).has_left(); }))
     end(expelled_.value_or(Ending{RunEnd::kFinished, "every SUT has finished"}));
 }
 

@@ -67,7 +67,7 @@ SimTime Coordinator::Impl::next_radio() const {
 void Coordinator::Impl::settle_radio() {
   while (const auto next = next_arrival()) {
     if (grid().floor(same_instant(next->at)) > st()) return;
-    const auto earliest = is_synchronised() ? barrier_.earliest() : std::nullopt;
+    const auto earliest = times_.earliest();
     if (earliest && *next > *earliest) return;
     arrivals_.clear();
     medium_.handle_next([this](std::size_t a, std::size_t b) { return stepper_.link(a, b); },
@@ -83,7 +83,7 @@ void Coordinator::Impl::take_arrival(radio::Arrival& arrival) {
     arrival.outcome = radio::Outcome::kInboxFull;
   log_arrival(arrival);
   count_full_queue(arrival);
-  if (arrival.outcome != radio::Outcome::kDelivered || receiver.left) return;
+  if (arrival.outcome != radio::Outcome::kDelivered || time_of(receiver).has_left()) return;
   const ExecTime arrived_at = same_instant(arrival.at);
   receiver.inbox.push_back(std::move(arrival));
   for (PendingInteraction& pending : receiver.open)
@@ -96,15 +96,9 @@ void Coordinator::Impl::take_arrival(radio::Arrival& arrival) {
 void Coordinator::Impl::promise(Session& session, PendingInteraction& pending, ExecTime reply_at) {
   pending.is_promised = true;
   ++session.promised;
-  if (!is_synchronised()) return;
-  record::Interaction& entry = pending.entry;
-  if (reply_at == entry.reply_at) return;
-  entry.reply_at = reply_at;
-  barrier_.move_up(session.uav, entry.sequence, reply_at);
-  if (boards_.shares(session.uav)) boards_.resume(session.uav, reply_at);
-  if (!session.is_concurrent()) return;
-  session.newest_moved_due = pending.moved_due = ++session.dues_sent;
-  server_->send(session.peer, link::Due{entry.sequence, reply_at});
+  pending.entry.reply_at = reply_at;
+  if (const auto due = time_of(session).move_up(pending.entry.sequence, reply_at))
+    server_->send(session.peer, *due);
 }
 
 // Takes the first message of the inbox.
@@ -125,7 +119,7 @@ void Coordinator::Impl::count_full_queue(const radio::Arrival& arrival) {
   constexpr std::size_t kDroppedPerQueued = 9;  // that a radio may be overloaded by for ever
   if (arrival.outcome != radio::Outcome::kQueueFull) {
     sender.full_queues -= std::min(sender.full_queues, kDroppedPerQueued);
-  } else if (!sender.left && ++sender.full_queues > kMaxFullQueues) {
+  } else if (!time_of(sender).has_left() && ++sender.full_queues > kMaxFullQueues) {
     expel(sender, {Fault::Kind::kFlood,
                    fmt::format("more than {} messages beyond ten times what its radio could send",
                                kMaxFullQueues)});
@@ -140,7 +134,6 @@ void Coordinator::Impl::expel(Session& session, const Fault& fault) {
                  fmt::format("the SUT of UAV \"{}\" sent {}", session.uav_name, fault.what)};
   log_.footer().expelled.push_back(session.uav_name);
   leave(session);
-  if (boards_.shares(session.uav)) boards_.leave(session.uav);
 }
 
 // --- the record ---------------------------------------------------------------------------------

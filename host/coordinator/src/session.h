@@ -14,34 +14,20 @@
 #include <tether/radio/medium.h>
 #include <tether/record/messages.h>
 #include <tether/sim/simulator.h>
-#include <tether/sync/barrier_synchronizer.h>
-#include <tether/sync/clock_plausibility.h>
-#include <tether/sync/execution_timer.h>
 #include <tether/timing/replay.h>
 
 namespace tether::coordinator {
 
 /// A request between its arrival and its reply.
 struct PendingInteraction {
-  link::Request request;
-  record::Interaction entry;    ///< complete when the reply is sent
-  bool is_promised = false;     ///< a message is in the inbox for this call
-  std::uint64_t moved_due = 0;  ///< number of the Due that moved its reply up; 0: none did
-};
-
-/// A request, and when it came and was sent.
-struct Arrived {
-  const link::Request& request;
-  SimTime st;
-  WallTime wall;
-  /// On a shared board: the board's ET, and what the SUT computed before it.
-  std::optional<ExecTime> sent_at{};
-  std::optional<Duration> computed{};
+  link::Request request{};
+  record::Interaction entry;  ///< complete when the reply is sent
+  bool is_promised = false;   ///< a message is in the inbox for this call
 };
 
 /// The state of one SUT and its UAV.
 struct Session {
-  std::size_t uav = 0;  ///< index of the UAV in the world, and of the SUT in the barrier
+  std::size_t uav = 0;  ///< index of the UAV in the world, and of its SUT's time in Timelines
   std::string uav_name;
   Duration command_latency{0};
   int cores = 0;  ///< of the SUT's machine; 0: not known
@@ -51,35 +37,23 @@ struct Session {
   // From the Hello on.
   link::PeerId peer = 0;  ///< 0: not joined
   link::Hello hello;
-  std::optional<sync::ExecutionTimer> timer;  ///< of an unstamped client
-  std::optional<sync::ClockPlausibility>
-      plausibility;  ///< synchronised, if the SUT measures its own time
   std::uint64_t next_sequence = 1;
   std::optional<timing::Replay> replay;  ///< with the clock "replayed"
-  SimTime called_at{};                   ///< ST of the last request
-  std::size_t calls_in_step = 0;         ///< requests at that ST
   AnnotationBudget annotations;
   std::optional<link::Finish> finish;
-  bool left = false;  ///< finished or disconnected by the coordinator
 
   // Radio.
   std::deque<radio::Arrival> inbox;  ///< arrived, in the order of time
   std::size_t promised = 0;          ///< open calls that will receive one of them
   RadioBudget radio_budget;
   std::size_t full_queues = 0;  ///< messages without room, beyond nine for each that was sent
-  std::uint64_t dues_sent = 0;
-  std::uint64_t newest_moved_due = 0;  ///< number of the last Due that was earlier than announced
 
   WallTime computes_since{};  ///< its last reply was sent
   bool is_hidden = false;     ///< RunHooks::threads_of does not know it
   SutLooks looks;
   Duration waited_before{};  ///< of `looks`, when its last reply was sent
 
-  std::optional<ExecTime> stopped_at;  ///< ET of the last stop in the record
-  ExecTime resumed_at{};               ///< ET of its last reply, from which on it computes
-  /// On a shared board: what it is known to have computed since then, as if alone, added to that.
-  ExecTime own_bound{};
-  std::vector<record::Annotation> notes;  ///< on a shared board: to record before the next reply
+  std::vector<record::Annotation> notes;  ///< settled: to record before the next reply
 
   /// Requests without a reply, in order; at most one for a serial SUT.
   std::vector<PendingInteraction> open;
@@ -88,10 +62,8 @@ struct Session {
   Duration computed{0};         ///< of RunHooks::computed_by, when the limits were last checked
   Duration computed_before{0};  ///< that, when the SUT's bound was last seen to grow
   ExecTime last_bound;          ///< then
-  Duration last_hold{0};        ///< WT from the last request to its reply; 0: none yet
 
   bool joined() const { return peer != 0; }
-  bool is_concurrent() const { return hello.concurrent; }
 };
 
 }  // namespace tether::coordinator

@@ -20,10 +20,10 @@ std::vector<record::SeenAnchor> describe(const std::vector<uav::SeenAnchor>& anc
 
 }  // namespace
 
-Stepper::Stepper(sim::Simulator& simulator, const sync::BarrierSynchronizer& barrier, RunLog& log,
+Stepper::Stepper(sim::Simulator& simulator, const Timelines& times, RunLog& log,
                  Duration ground_truth_period, std::vector<Sampler> samplers)
     : simulator_(&simulator),
-      barrier_(&barrier),
+      times_(&times),
       log_(&log),
       grid_(simulator.grid()),
       ground_truth_period_(ground_truth_period),
@@ -110,7 +110,7 @@ void Stepper::sample() {
   };
   while (same_instant(due_.least()) <= st_) {
     const std::size_t uav = due_.first();
-    samplers_[uav].sample(st_, same_instant(barrier_->bound(uav)), capture);
+    samplers_[uav].sample(st_, same_instant((*times_)[uav].bound()), capture);
     note_change(uav);
   }
 }

@@ -4,6 +4,7 @@
 #include "computer_load.h"
 #include "run_log.h"
 #include "sensors/sampler.h"
+#include "time/timelines.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -15,7 +16,6 @@
 #include <tether/radio/link_budget.h>
 #include <tether/record/messages.h>
 #include <tether/sim/simulator.h>
-#include <tether/sync/barrier_synchronizer.h>
 #include <tether/sync/least_tree.h>
 
 namespace tether::coordinator {
@@ -31,7 +31,7 @@ struct SimulatorFailure : std::runtime_error {
 class Stepper {
  public:
   /// `samplers`: one per UAV of the world. The other arguments must outlive the Stepper.
-  Stepper(sim::Simulator& simulator, const sync::BarrierSynchronizer& barrier, RunLog& log,
+  Stepper(sim::Simulator& simulator, const Timelines& times, RunLog& log,
           Duration ground_truth_period, std::vector<Sampler> samplers);
 
   void reset(std::uint64_t seed);
@@ -101,7 +101,7 @@ class Stepper {
   }
 
   sim::Simulator* simulator_;
-  const sync::BarrierSynchronizer* barrier_;
+  const Timelines* times_;
   RunLog* log_;
   StepGrid grid_;
   Duration ground_truth_period_;

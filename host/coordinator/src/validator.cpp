@@ -28,10 +28,10 @@ MaybeFault order_fault(const link::Request& request, const Standing& sut) {
     if (sut.open_calls >= sync::kMaxOpenCalls)
       return Fault{Kind::kTooMany,
                    fmt::format("a request while {} others are open", sut.open_calls)};
-    if (sut.synchronised && sut.held)
+    if (sut.held)
       return Fault{Kind::kOutOfOrder,
                    fmt::format("a request at ET {} ns while it was stopped for a reply at {} ns",
-                               to_ns(request.issued_at), to_ns(sut.bound))};
+                               to_ns(request.issued_at), to_ns(*sut.bound))};
   } else {
     if (sut.open_calls > 0)
       return Fault{Kind::kOutOfOrder, "a request while another request is open"};
@@ -57,7 +57,7 @@ MaybeFault clock_fault(ExecTime stamp, const Standing& sut, WallTime now) {
 }
 
 MaybeFault rate_fault(const Standing& sut) {
-  if (!sut.synchronised || sut.calls_in_step < kMaxCallsInAStep) return std::nullopt;
+  if (sut.calls_in_step < kMaxCallsInAStep) return std::nullopt;
   return Fault{
       Kind::kTooMany,
       fmt::format("{} requests at ST {:.6f} s, more than the limit; a loop that waits must "
@@ -121,12 +121,12 @@ MaybeFault stop_fault(ExecTime at, const Standing& sut) {
     return Fault{Kind::kImpossibleStop, "a stop, which only concurrent SUTs may send"};
   if (at < sut.bound)
     return Fault{Kind::kImpossibleStop, fmt::format("a stop at ET {} ns after it had reached {} ns",
-                                                    to_ns(at), to_ns(sut.bound))};
+                                                    to_ns(at), to_ns(*sut.bound))};
   // The same stop again, for a message that has arrived meanwhile, is possible.
   if (sut.held && at > sut.bound)
     return Fault{Kind::kImpossibleStop,
                  fmt::format("a stop at ET {} ns while it was stopped for a reply at {} ns",
-                             to_ns(at), to_ns(sut.bound))};
+                             to_ns(at), to_ns(*sut.bound))};
   return std::nullopt;
 }
 

@@ -51,12 +51,13 @@ struct Fault {
 
 /// The state of a SUT that decides which messages it may send next.
 struct Standing {
-  bool running = false;      ///< every SUT has joined
-  bool synchronised = true;  ///< false: free running
-  bool concurrent = false;   ///< it has several threads
-  bool finished = false;     ///< its Finish has arrived
-  bool held = false;         ///< it is stopped until a reply
-  ExecTime bound;            ///< ET that it has reached; the reply's if it is held
+  bool running = false;     ///< every SUT has joined
+  bool concurrent = false;  ///< it has several threads
+  bool finished = false;    ///< its Finish has arrived
+  bool held = false;        ///< it is stopped until a reply
+  /// ET that it has reached; the reply's if it is held. None before the Welcome and in free
+  /// running.
+  std::optional<ExecTime> bound{};
   std::size_t open_calls = 0;
   std::uint32_t received_bytes = 0;  ///< of a reply that takes long to arrive
   std::uint64_t next_sequence = 1;
@@ -75,7 +76,7 @@ struct Standing {
 bool is_stamp(ExecTime t);
 /// What is wrong with a request received at `now`; none if nothing is.
 std::optional<Fault> fault_of(const link::Request& request, const Standing& sut, WallTime now);
-/// The same for progress and stops. @pre running, synchronised, is_stamp(progress.reached).
+/// The same for progress and stops. @pre is_stamp(progress.reached).
 std::optional<Fault> fault_of(const link::Progress& progress, const Standing& sut, WallTime now);
 /// The fault of a message that is neither Request, Progress nor Annotation.
 Fault fault_of_other(const link::Message& message);

@@ -38,7 +38,8 @@ const char* sign_of_life(const Party& party) {
 
 std::string describe_state(const Party& party) {
   if (party.computing || !party.reply_at)
-    return fmt::format("it was computing; last message at ET {:.6f} s", to_seconds(party.bound));
+    return fmt::format("it was computing; last message at ET {:.6f} s",
+                       to_seconds(party.bound.value_or(ExecTime{})));
   return fmt::format("it was waiting for its reply at ET {:.6f} s", to_seconds(*party.reply_at));
 }
 
@@ -47,7 +48,8 @@ std::string describe_blocking(SimTime st, const std::vector<Party>& parties) {
   const Party* blocker = nullptr;
   std::vector<std::string> waiting;
   for (const Party& party : parties) {
-    if (party.computing && (!blocker || party.bound < blocker->bound)) blocker = &party;
+    if (party.computing && party.bound && (!blocker || party.bound < blocker->bound))
+      blocker = &party;
     if (!party.computing && party.reply_at)
       waiting.push_back(fmt::format("UAV \"{}\" waits for its reply at ET {:.6f} s", party.uav,
                                     to_seconds(*party.reply_at)));
@@ -63,25 +65,21 @@ std::string describe_blocking(SimTime st, const std::vector<Party>& parties) {
           ? "computing"
           : fmt::format("waiting for the rest of its reply (received {} bytes)",
                         blocker->received_bytes),
-      to_seconds(blocker->silence), sign_of_life(*blocker), to_seconds(blocker->bound));
+      to_seconds(blocker->silence), sign_of_life(*blocker), to_seconds(*blocker->bound));
 }
 
 bool shows_life(const link::Message& message, const Standing& sut, computer::ClockKind clock) {
-  if (!sut.running || !sut.synchronised) return true;
+  if (!sut.bound) return true;
   if (std::holds_alternative<link::Annotation>(message)) return false;
   const auto* progress = std::get_if<link::Progress>(&message);
   if (!progress) return true;
   if (progress->received_bytes > 0) return progress->received_bytes > sut.received_bytes;
   if (clock == computer::ClockKind::kWall && sut.open_calls == 0) return false;
-  return progress->reached > sut.bound;
+  return progress->reached > *sut.bound;
 }
 
-Watchdog::Watchdog(const Limits& limits, std::size_t suts, bool synchronised, WallTime now)
-    : limits_(limits),
-      synchronised_(synchronised),
-      last_heard_(suts, now),
-      moved_(now),
-      checked_(now) {}
+Watchdog::Watchdog(const Limits& limits, std::size_t suts, WallTime now)
+    : limits_(limits), last_heard_(suts, now), moved_(now), checked_(now) {}
 
 void Watchdog::begin(WallTime now) {
   running_ = true;
@@ -118,12 +116,13 @@ std::optional<Ending> Watchdog::overdue(const std::vector<Party>& parties, SimTi
                     fmt::format("the SUT of UAV \"{}\" did not connect within {} s "
                                 "(connect_limit_s). A SUT calls tether_connect() to connect",
                                 party.uav, to_seconds(limits_.connect))};
-    if (running_ && party.computing && party.silence > limits_.hang)
-      return Ending{
-          RunEnd::kSutHung,
-          fmt::format("SUT \"{}\" of UAV \"{}\" timed out: no {} for {} s (hang_limit_s){}",
-                      party.sut, party.uav, sign_of_life(party), to_seconds(limits_.hang),
-                      synchronised_ ? ": " + describe_blocking(st, parties) : "")};
+    if (!running_ || !party.computing || party.silence <= limits_.hang) continue;
+    const std::string blocking = describe_blocking(st, parties);
+    return Ending{
+        RunEnd::kSutHung,
+        fmt::format("SUT \"{}\" of UAV \"{}\" timed out: no {} for {} s (hang_limit_s){}{}",
+                    party.sut, party.uav, sign_of_life(party), to_seconds(limits_.hang),
+                    blocking.empty() ? "" : ": ", blocking)};
   }
   return std::nullopt;
 }
@@ -136,7 +135,7 @@ std::string Watchdog::blocked(const std::vector<Party>& parties, SimTime st, Wal
     return party.counted && party.computing && party.silence < kStillPeriod;
   };
   if (std::any_of(parties.begin(), parties.end(), computes)) return "";
-  return synchronised_ ? describe_blocking(st, parties) : "";
+  return describe_blocking(st, parties);
 }
 
 }  // namespace tether::coordinator

@@ -18,7 +18,7 @@ struct Party {
   std::string uav;
   bool joined = true;
   bool computing = false;              ///< the coordinator waits for its next message
-  ExecTime bound;                      ///< ET that it is known to have reached
+  std::optional<ExecTime> bound{};     ///< ET that it is known to have reached; see Timeline::et
   Duration silence{0};                 ///< WT since its last sign of life
   std::optional<ExecTime> reply_at{};  ///< of its open calls the earliest
   bool counted = false;                ///< its work is counted, and a sign of life
@@ -29,7 +29,7 @@ struct Party {
 /// "it was computing; last message at ET 1.200000 s"
 std::string describe_state(const Party& party);
 /// Which SUT blocks the run, for how long, and which SUTs wait for it; one sentence. Empty if all
-/// wait for the simulator.
+/// wait for the simulator, and in free running.
 std::string describe_blocking(SimTime st, const std::vector<Party>& parties);
 
 /// Whether a message is a sign of life. Under the barrier, progress is sent by a helper thread, and
@@ -48,7 +48,7 @@ class Watchdog {
     Duration hang;     ///< of WT without a sign of life from a SUT that computes
   };
 
-  Watchdog(const Limits& limits, std::size_t suts, bool synchronised, WallTime now);
+  Watchdog(const Limits& limits, std::size_t suts, WallTime now);
 
   /// Every SUT has joined.
   void begin(WallTime now);
@@ -75,7 +75,6 @@ class Watchdog {
   void discount(Duration unwatched, WallTime now);
 
   Limits limits_;
-  bool synchronised_;
   bool running_ = false;
   std::vector<WallTime> last_heard_;  // of each SUT
   WallTime moved_;

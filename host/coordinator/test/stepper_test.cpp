@@ -20,9 +20,10 @@ TEST(Stepper, ACommandTakesEffectAtTheFirstBoundaryFromItsTimeOn) {
   sim::FakeSimulator simulator(sim::make_fake_world(1));
   MemoryRecorder recorder;
   RunLog log(recorder);
-  sync::BarrierSynchronizer barrier(simulator.grid());
-  barrier.add(ExecTime{});
-  Stepper stepper(simulator, barrier, log, milliseconds(10), {Sampler({}, simulator.grid())});
+  RunOptions options;
+  options.uavs.resize(1);
+  const Timelines times(options, simulator.grid());
+  Stepper stepper(simulator, times, log, milliseconds(10), {Sampler({}, simulator.grid())});
   stepper.act();
   const std::pair<int, int> cases[] = {{0, 0}, {1'000, 1}, {1'001, 2}, {2'999, 3}};  // us, st_ms
   for (const auto& [t, effect] : cases)

@@ -20,7 +20,7 @@ ExecTime et_ms(std::int64_t value) {
 }
 constexpr SimTime kSt{milliseconds(1200)};
 
-Party computing(const std::string& uav, Duration silence, ExecTime bound = {}) {
+Party computing(const std::string& uav, Duration silence, ExecTime bound = ExecTime{}) {
   return {
       .sut = "sut of " + uav, .uav = uav, .computing = true, .bound = bound, .silence = silence};
 }
@@ -36,8 +36,8 @@ Party absent(const std::string& uav, Duration waited) {
 }
 
 /// For two SUTs, with limits of 60 s of ST, 5 s to connect, and 3 s without a sign of life.
-Watchdog make(bool synchronised = true) {
-  return {{SimTime(seconds(60)), seconds(5), seconds(3)}, 2, synchronised, WallTime{}};
+Watchdog make() {
+  return {{SimTime(seconds(60)), seconds(5), seconds(3)}, 2, WallTime{}};
 }
 
 TEST(Watchdog, EndsARunAtItsLimitOfSt) {
@@ -108,23 +108,28 @@ TEST(Watchdog, ReportsTheBlockingSutAfterASecondWithoutAMove) {
   EXPECT_EQ(watchdog.blocked({counted}, kSt, at(seconds(8))), "");
   counted.silence = seconds(1);
   EXPECT_NE(watchdog.blocked({counted}, kSt, at(seconds(8))), "");
-  Watchdog free_running = make(false);
-  free_running.begin(WallTime{});
-  EXPECT_EQ(free_running.blocked(parties, kSt, at(seconds(8))), "");
+}
+
+TEST(Watchdog, NamesNoBlockingSutInFreeRunning) {
+  Watchdog watchdog = make();
+  watchdog.begin(WallTime{});
+  Party free = computing("a", seconds(4));
+  free.bound.reset();
+  EXPECT_EQ(watchdog.blocked({free}, kSt, at(seconds(8))), "");
+  EXPECT_EQ(watchdog.overdue({free}, kSt)->reason,
+            "SUT \"sut of a\" of UAV \"a\" timed out: no message for 3 s (hang_limit_s)");
 }
 
 TEST(Watchdog, ReportsSutsThatHaveNotJoinedBeforeTheRun) {
-  for (const bool synchronised : {true, false}) {
-    const Watchdog watchdog = make(synchronised);
-    const auto blocked = [&](const Party& first) {
-      return watchdog.blocked({first, absent("b", milliseconds(1040))}, kSt, at(seconds(2)));
-    };
-    EXPECT_EQ(blocked(computing("a", seconds(9))),
-              "waiting for the SUT of \"b\" to connect (1.0 s so far)");
-    EXPECT_EQ(watchdog.blocked({absent("a", milliseconds(999))}, kSt, at(seconds(2))), "");
-    EXPECT_EQ(blocked(absent("a", milliseconds(2500))),
-              "waiting for the SUTs of \"a\", \"b\" to connect (2.5 s so far)");
-  }
+  const Watchdog watchdog = make();
+  const auto blocked = [&](const Party& first) {
+    return watchdog.blocked({first, absent("b", milliseconds(1040))}, kSt, at(seconds(2)));
+  };
+  EXPECT_EQ(blocked(computing("a", seconds(9))),
+            "waiting for the SUT of \"b\" to connect (1.0 s so far)");
+  EXPECT_EQ(watchdog.blocked({absent("a", milliseconds(999))}, kSt, at(seconds(2))), "");
+  EXPECT_EQ(blocked(absent("a", milliseconds(2500))),
+            "waiting for the SUTs of \"a\", \"b\" to connect (2.5 s so far)");
 }
 
 TEST(DescribeBlocking, NamesTheComputingSutWithTheSmallestEtAndThoseThatWait) {
@@ -179,7 +184,7 @@ TEST(ShowsLife, IgnoresTheHelperThreadOfAStuckSut) {
                  .st = {},
                  .sensors = sensors};
     EXPECT_EQ(shows_life(c.message, sut, c.clock), c.shows_life) << c.what;
-    sut.synchronised = false;
+    sut.bound.reset();
     EXPECT_TRUE(shows_life(c.message, sut, c.clock)) << "in free running: " << c.what;
   }
 }

@@ -48,6 +48,8 @@ struct Clock {
   bool counts_waiting() const;
   /// The same, and no factor makes more of it, as it does of computing.
   bool counts_waiting_as_it_is() const { return counts_waiting() && !is_scaled(); }
+  /// Grows by the time of every core on which the program and its descendants compute.
+  bool adds_up_cores() const { return kind == ClockKind::kCpu; }
   /// Cannot be used in free running, where ST follows the real wall clock.
   bool needs_barrier() const;
   /// The clock of a machine that is several times slower or faster: a factor that is not 1.
