@@ -24,6 +24,8 @@ constexpr Duration kIdleWait = std::chrono::milliseconds(20);
 constexpr Duration kPaceCredit = std::chrono::milliseconds(50);
 // How long a UAV without power may fall before the run ends.
 constexpr Duration kFall = std::chrono::seconds(2);
+// A SUT sends no more at once, unless it floods the coordinator.
+constexpr int kMostPolls = 8;
 // How often the record is flushed, so that a killed run leaves most of it.
 constexpr Duration kFlushPeriod = std::chrono::seconds(1);
 
@@ -60,6 +62,12 @@ std::vector<Session> make_sessions(const sim::World& world, const RunOptions& op
     sessions[i].recorded_image_at.resize(world.uavs[i].sensors.size());
   }
   return sessions;
+}
+
+std::vector<std::string> names_of(const sim::World& world) {
+  std::vector<std::string> names;
+  for (const sim::Uav& uav : world.uavs) names.push_back(uav.name);
+  return names;
 }
 
 RunOptions checked(RunOptions options, const sim::Simulator& simulator) {
@@ -108,13 +116,13 @@ Coordinator::Impl::Impl(sim::Simulator& simulator, record::Recorder& recorder, R
       stepper_(simulator, times_, log_, options_.ground_truth_period,
                make_samplers(simulator, options_)),
       sessions_(make_sessions(world(), options_)),
-      uav_names_(names_of_uavs()),
-      medium_(options_.radio, options_.seed, uav_names_),
+      radio_(options_.radio, options_.seed, names_of(world()), log_),
       time_limit_(simulator.grid().ceil(SimTime(options_.time_limit))),
       started_(host_clock_()),
       flushed_(started_),
       watchdog_({time_limit_, options_.connect_limit, options_.hang_limit}, sessions_.size(),
-                started_) {}
+                started_),
+      looks_(sessions_.size(), times_) {}
 
 RunReport Coordinator::Impl::run(link::Server& server, const RunHooks& hooks) {
   server_ = &server;
@@ -137,7 +145,8 @@ RunReport Coordinator::Impl::run(link::Server& server, const RunHooks& hooks) {
 void Coordinator::Impl::turn() {
   const bool moved = running_ && advance();
   const Duration wait = pace_ ? std::min(kIdleWait, pace_->wait_for(grid().dt())) : kIdleWait;
-  for (const link::Event& event : server_->poll(moved ? Duration(0) : std::min(wait, until_look())))
+  for (const link::Event& event :
+       server_->poll(moved ? Duration(0) : std::min(wait, looks_.until_due(host_clock_))))
     on_event(event);
   look_at_suts();
 }
@@ -153,10 +162,10 @@ void Coordinator::Impl::start() {
   running_ = true;
   if (options_.real_time_factor > 0.0)
     pace_.emplace(options_.real_time_factor, std::max(kPaceCredit, 2 * grid().dt()), started_);
-  for (Session& session : sessions_) computes_from(session, ExecTime{}, started_);
+  for (const Session& session : sessions_) computes_from(session.uav, ExecTime{}, started_);
   stepper_.act();
   log_.race_again();
-  next_look_ = started_;
+  looks_.begin(hooks_.threads_of, started_);
   const bool is_free = options_.policy == sync::SyncPolicy::kFreeRunning;
   for (const Session& session : sessions_)
     server_->send(session.peer,
@@ -164,7 +173,7 @@ void Coordinator::Impl::start() {
                                 .free_running = is_free,
                                 .start = ExecTime{},
                                 .computing = time_given(session),
-                                .peers = peers_of(session),
+                                .peers = radio_.peers_of(session.uav),
                                 .real_time_factor = is_free ? options_.real_time_factor : 1.0});
 }
 
@@ -270,6 +279,23 @@ void Coordinator::Impl::end_endless(Session& session) {
     time.progress({.reached = limit});
 }
 
+// A program that waits in small steps computes a little between them, and that is a sign of life.
+void Coordinator::Impl::look_at_suts() {
+  const auto looks = looks_.look(host_clock_);
+  for (int i = 0; !looks.empty() && i < kMostPolls && !ended_; ++i) {
+    const auto events = server_->poll(Duration(0));
+    if (events.empty()) break;
+    for (const link::Event& event : events) on_event(event);
+  }
+  for (const ThreadLooks::Look& look : looks)
+    if (looks_.count(look) > options_.hang_limit)
+      end({RunEnd::kSutHung,
+           fmt::format("SUT \"{}\" of UAV \"{}\" timed out: after its last call it waited {} s "
+                       "(hang_limit_s) on something that Tether does not see",
+                       sessions_[look.uav].hello.sut, sessions_[look.uav].uav_name,
+                       to_seconds(options_.hang_limit))});
+}
+
 void Coordinator::Impl::stop_if_asked() {
   if (ended_ || !hooks_.should_stop) return;
   if (const auto stop = hooks_.should_stop()) end(*stop);
@@ -321,7 +347,7 @@ RunStatus Coordinator::Impl::status(WallTime now) const {
 // Notifies the SUTs that are still connected, then completes the record.
 RunReport Coordinator::Impl::close_run() {
   if (running_ && ended_->how != RunEnd::kSimulatorLost) stepper_.log_contacts();
-  if (running_) log_in_transit();
+  if (running_) radio_.log_in_transit(st(), grid());
   record::Footer& footer = log_.footer();
   RunReport report{
       .end = ended_->how,
@@ -345,7 +371,7 @@ RunReport Coordinator::Impl::close_run() {
                            .sut = session.hello.sut,
                            .finish = session.finish,
                            .et = time_of(session).bound(),
-                           .looks = session.looks});
+                           .looks = looks_.of(session.uav)});
   }
   if (!running_) return report;
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "looks.h"
+#include "radio_traffic.h"
 #include "run_log.h"
 #include "session.h"
 #include "stepper.h"
@@ -12,7 +14,6 @@
 #include <vector>
 
 #include <tether/coordinator/coordinator.h>
-#include <tether/radio/medium.h>
 #include <tether/sync/real_time_limit.h>
 
 namespace tether::coordinator {
@@ -24,16 +25,16 @@ namespace tether::coordinator {
 ///     validator    whether a message of a SUT is allowed
 ///     Timelines    when a SUT sent a request, which replies are held until when, and how far ST
 ///                  may advance
-///     Medium       when a message between UAVs arrives, or why it is lost
+///     RadioTraffic when a message between UAVs arrives, or why it is lost
 ///     Stepper      what is due at each boundary; its Samplers: what sensors sample, and when
 ///     Watchdog     whether the run takes too long, and who is blocked on whom
+///     ThreadLooks  what the threads of SUTs do meanwhile
 ///     RunLog       what the record has of all this, and in which order
 ///
-/// looks.cpp watches what the threads of SUTs do meanwhile, which nothing else depends on.
 /// A request passes them in this order: it is validated; it may wait until its instant is known
 /// (settle); it is planned (accept) and held by its Timeline; ST advances to its reply's timestamp;
 /// release_ready sends the reply and logs the interaction. A message between UAVs that arrives
-/// meanwhile can move a reply to an earlier instant (promise).
+/// meanwhile can move a reply to an earlier instant (deliver).
 class Coordinator::Impl {
  public:
   Impl(sim::Simulator& simulator, record::Recorder& recorder, RunOptions options,
@@ -57,16 +58,11 @@ class Coordinator::Impl {
   std::vector<Party> parties(WallTime now) const;
   void hear_emulated_start(Session& session, WallTime now);
   void end_endless(Session& session);
+  void look_at_suts();
   void stop_if_asked();
   void end(const Ending& ending);
   RunReport close_run();
   RunStatus status(WallTime now) const;
-
-  // Looks.
-  Duration until_look() const;
-  bool is_looked_at(const Session& session) const;
-  void look_at_suts();
-  void end_unseen_wait(const Session& session);
 
   // Incoming.
   void on_event(const link::Event& event);
@@ -94,30 +90,19 @@ class Coordinator::Impl {
   void refuse(link::PeerId peer, link::Refusal::Reason reason, const std::string& message);
 
   // Radio.
-  std::vector<std::string> names_of_uavs() const;
-  std::vector<std::string> peers_of(const Session& session) const;
-  void accept_send(const Session& session, const record::Interaction& entry,
-                   const link::SendMessage& send);
-  ExecTime accept_receive(Session& session, PendingInteraction& pending,
+  ExecTime accept_receive(PendingInteraction& pending, std::size_t uav,
                           const link::ReceiveMessage& receive);
-  std::optional<sync::SutTime> next_arrival() const;
   SimTime next_radio() const;
   void settle_radio();
-  void take_arrival(radio::Arrival& arrival);
-  void promise(Session& session, PendingInteraction& pending, ExecTime reply_at);
-  static void receive(Session& session, record::Interaction& entry, link::Reply& reply,
-                      const std::vector<Session>& sessions);
-  void count_full_queue(const radio::Arrival& arrival);
+  void deliver(Session& session, ExecTime arrived_at);
   void expel(Session& session, const Fault& fault);
-  void log_in_transit();
-  void log_arrival(const radio::Arrival& arrival);
 
   // Outgoing.
   void release_ready();
   void settle();
   void reply(Session& session, std::size_t open_index, SimTime st);
   void leave(Session& session);
-  void computes_from(Session& session, ExecTime at, WallTime since);
+  void computes_from(std::size_t uav, ExecTime at, WallTime since);
   std::optional<uav::CameraSample> image_to_record(Session& session, const link::Request& request,
                                                    const link::Reply& reply) const;
 
@@ -139,18 +124,15 @@ class Coordinator::Impl {
   Stepper stepper_;
   std::vector<Session> sessions_;               // one per UAV, in the world's order
   std::map<link::PeerId, std::size_t> joined_;  // index of the session of each SUT
-  std::vector<std::string> uav_names_;
-  radio::Medium medium_;
-  std::vector<radio::Arrival> arrivals_;  // of one event
-  SimTime time_limit_;                    // a step boundary
+  RadioTraffic radio_;
+  SimTime time_limit_;  // a step boundary
   std::optional<sync::RealTimeLimit> pace_;
 
   bool running_ = false;  // every SUT has joined
   WallTime started_;      // construction; later, when every SUT had joined
   WallTime flushed_;      // last flush of the record
   Watchdog watchdog_;
-  WallTime next_look_;  // when one is due
-  Duration look_period_ = std::chrono::milliseconds(2);
+  ThreadLooks looks_;
   std::optional<SimTime> fallen_at_;  // a battery is empty: when the run ends
   std::string fall_;                  // the reason
   std::optional<Ending> expelled_;    // how the run ends once the other SUTs have finished

@@ -110,7 +110,7 @@ void Coordinator::Impl::on_closed(link::PeerId peer, const Failure& failure) {
 void Coordinator::Impl::join(link::PeerId peer, const link::Hello& hello) {
   std::vector<bool> taken;
   for (const Session& session : sessions_) taken.push_back(session.joined());
-  const auto admitted = admit(hello, options_.token, uav_names_, taken);
+  const auto admitted = admit(hello, options_.token, radio_.uavs(), taken);
   if (const auto* refusal = std::get_if<link::Refusal>(&admitted))
     return refuse(peer, refusal->reason, refusal->message);
 
@@ -163,7 +163,7 @@ Standing Coordinator::Impl::standing(const Session& session) const {
           .st = st(),
           .calls_in_step = time.calls_at(st()),
           .waiting_commands = stepper_.waiting_commands(session.uav),
-          .uavs = uav_names_,
+          .uavs = radio_.uavs(),
           .uav = session.uav,
           .sensors = stepper_.sampler(session.uav),
           .has_battery = stepper_.has_battery(session.uav),
@@ -178,7 +178,7 @@ void Coordinator::Impl::on_request(Session& session, const link::Request& reques
   if (const auto fault = fault_of(request, standing(session), now))
     return break_off(session, link::Refusal::Reason::kBadRequest, *fault);
   if (const auto* send = std::get_if<link::SendMessage>(&request.body))
-    if (const auto flood = session.radio_budget.spend(st(), send->bytes.size()))
+    if (const auto flood = radio_.spend(session.uav, st(), send->bytes.size()))
       return expel(session, *flood);
   if (session.replay) check_replay(session, request);
   if (ended_) return;
@@ -193,7 +193,7 @@ void Coordinator::Impl::on_request(Session& session, const link::Request& reques
 // Handles the messages whose instant is known only now.
 bool Coordinator::Impl::settle_boards() {
   const bool has_changed =
-      times_.settle([this] { return next_arrival(); },
+      times_.settle([this] { return radio_.next(); },
                     [this](std::size_t uav, ExecTime from, ExecTime to, double cores) {
                       stepper_.computes(uav, same_instant(from), same_instant(to), cores);
                     },
@@ -295,11 +295,11 @@ ExecTime Coordinator::Impl::accept(Session& session, PendingInteraction& pending
     return std::max(pending.entry.request_at, until);
   }
   if (const auto* send = std::get_if<link::SendMessage>(&request.body)) {
-    accept_send(session, pending.entry, *send);
+    radio_.send(session.uav, request.sequence, same_instant(pending.entry.request_at), *send);
     return pending.entry.request_at;
   }
   if (const auto* receive = std::get_if<link::ReceiveMessage>(&request.body))
-    return accept_receive(session, pending, *receive);
+    return accept_receive(pending, session.uav, *receive);
   if (std::holds_alternative<link::ReadBattery>(request.body)) return pending.entry.request_at;
   session.finish = std::get<link::Finish>(request.body);
   session.finish->outcome = printable(session.finish->outcome);

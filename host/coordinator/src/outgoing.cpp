@@ -12,7 +12,7 @@ void Coordinator::Impl::release_ready() {
   // Other threads draw ahead: while one picture is drawn for its reply, those of other SUTs, and
   // while the SUTs compute, what they will read.
   if (sessions_.size() > 1) stepper_.announce();
-  while (const auto grant = times_.release(st(), next_arrival())) {
+  while (const auto grant = times_.release(st(), radio_.next())) {
     Session& session = sessions_[grant->sut];
     std::size_t i = 0;
     while (session.open[i].entry.sequence != grant->call) ++i;
@@ -42,7 +42,7 @@ void Coordinator::Impl::reply(Session& session, std::size_t open_index, SimTime 
                       .sample = stepper_.measure(session.uav, entry),
                       .computing = time_given(session)};
   if (entry.kind == record::kBattery) message.battery = stepper_.read_battery(session.uav, entry);
-  if (pending.is_promised) receive(session, entry, message, sessions_);
+  if (pending.is_promised) radio_.receive(session.uav, entry, message);
   const std::optional<uav::CameraSample> image = image_to_record(session, pending.request, message);
   entry.st_at_release = st;
   entry.grid_error = std::max(entry.grid_error, same_instant(entry.reply_at) - st);
@@ -53,8 +53,7 @@ void Coordinator::Impl::reply(Session& session, std::size_t open_index, SimTime 
   watchdog_.heard(session.uav, entry.wall_at_release);
   watchdog_.moved(entry.wall_at_release);
   time_of(session).replied(entry);
-  computes_from(session, entry.reply_at, entry.wall_at_release);
-  session.waited_before = session.looks.waiting;
+  computes_from(session.uav, entry.reply_at, entry.wall_at_release);
   for (record::Annotation& note : session.notes) log_.annotation(st, std::move(note));
   session.notes.clear();
   const bool is_last = entry.kind == record::kFinish;
@@ -77,15 +76,15 @@ std::optional<uav::CameraSample> Coordinator::Impl::image_to_record(
 
 // What the threads of a concurrent SUT compute while others wait is not known; what a SUT on a
 // shared board computes, its board's time line knows.
-void Coordinator::Impl::computes_from(Session& session, ExecTime at, WallTime since) {
-  session.computes_since = since;
-  if (time_of(session).facts().loads_one_core())
-    stepper_.begins_computing(session.uav, same_instant(at));
+void Coordinator::Impl::computes_from(std::size_t uav, ExecTime at, WallTime since) {
+  looks_.computes(uav, since);
+  if (times_[uav].facts().loads_one_core()) stepper_.begins_computing(uav, same_instant(at));
 }
 
 // Drops the other open calls of a concurrent SUT.
 void Coordinator::Impl::leave(Session& session) {
   time_of(session).leave();
+  radio_.close(session.uav);
   session.open.clear();
   stepper_.close(session.uav);
   stepper_.ends_computing(session.uav, st());

@@ -3,7 +3,6 @@
 #include "validator.h"
 
 #include <cstdint>
-#include <deque>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,7 +10,6 @@
 #include <tether/coordinator/coordinator.h>
 #include <tether/link/messages.h>
 #include <tether/link/server.h>
-#include <tether/radio/medium.h>
 #include <tether/record/messages.h>
 #include <tether/sim/simulator.h>
 #include <tether/timing/replay.h>
@@ -41,17 +39,6 @@ struct Session {
   std::optional<timing::Replay> replay;  ///< with the clock "replayed"
   AnnotationBudget annotations;
   std::optional<link::Finish> finish;
-
-  // Radio.
-  std::deque<radio::Arrival> inbox;  ///< arrived, in the order of time
-  std::size_t promised = 0;          ///< open calls that will receive one of them
-  RadioBudget radio_budget;
-  std::size_t full_queues = 0;  ///< messages without room, beyond nine for each that was sent
-
-  WallTime computes_since{};  ///< its last reply was sent
-  bool is_hidden = false;     ///< RunHooks::threads_of does not know it
-  SutLooks looks;
-  Duration waited_before{};  ///< of `looks`, when its last reply was sent
 
   std::vector<record::Annotation> notes;  ///< settled: to record before the next reply
 

@@ -22,7 +22,7 @@ inline constexpr std::size_t kMaxCallsInAStep = 10'000;
 inline constexpr std::size_t kMaxWaitingCommands = 65'536;
 /// Limits on the messages by radio of a SUT: between two steps of ST, in a second of ST (to each of
 /// 250 UAVs 40 times a second), their bytes in a second (0.5 Gbit/s), and those for which its queue
-/// has no room (`Session::full_queues`). They bound the record and what an ideal radio has in
+/// has no room (`RadioTraffic::flood_of`). They bound the record and what an ideal radio has in
 /// transit. A SUT that exceeds them loses its session; the others finish.
 inline constexpr std::size_t kMaxMessagesInAStep = 1'000;
 inline constexpr std::size_t kMaxMessagesInASecond = 10'000;
