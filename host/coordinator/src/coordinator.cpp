@@ -70,6 +70,13 @@ std::vector<std::string> names_of(const sim::World& world) {
   return names;
 }
 
+uav::Catalogue catalogue_of(const sim::World& world, std::size_t index, bool has_battery) {
+  const sim::Uav& uav = world.uavs[index];
+  uav::Catalogue catalogue = sim::make_catalogue(world, uav);
+  if (has_battery) catalogue.battery_capacity_C = uav.energy->battery.capacity_C;
+  return catalogue;
+}
+
 RunOptions checked(RunOptions options, const sim::Simulator& simulator) {
   const sim::World& world = simulator.world();
   const auto require = [](bool condition, const char* what) {
@@ -169,20 +176,13 @@ void Coordinator::Impl::start() {
   const bool is_free = options_.policy == sync::SyncPolicy::kFreeRunning;
   for (const Session& session : sessions_)
     server_->send(session.peer,
-                  link::Welcome{.catalogue = catalogue_of(session),
+                  link::Welcome{.catalogue = catalogue_of(world(), session.uav,
+                                                          stepper_.has_battery(session.uav)),
                                 .free_running = is_free,
                                 .start = ExecTime{},
-                                .computing = time_given(session),
+                                .computing = session.time_given(),
                                 .peers = radio_.peers_of(session.uav),
                                 .real_time_factor = is_free ? options_.real_time_factor : 1.0});
-}
-
-uav::Catalogue Coordinator::Impl::catalogue_of(const Session& session) const {
-  const sim::Uav& uav = world().uavs[session.uav];
-  uav::Catalogue catalogue = sim::make_catalogue(world(), uav);
-  if (stepper_.has_battery(session.uav))
-    catalogue.battery_capacity_C = uav.energy->battery.capacity_C;
-  return catalogue;
 }
 
 // Advances ST; false if it must not advance now.

@@ -32,9 +32,9 @@ namespace tether::coordinator {
 ///     RunLog       what the record has of all this, and in which order
 ///
 /// A request passes them in this order: it is validated; it may wait until its instant is known
-/// (settle); it is planned (accept) and held by its Timeline; ST advances to its reply's timestamp;
-/// release_ready sends the reply and logs the interaction. A message between UAVs that arrives
-/// meanwhile can move a reply to an earlier instant (deliver).
+/// (settle); it is planned (plan.cpp) and held by its Timeline; ST advances to its reply's
+/// timestamp; release_ready sends the reply and logs the interaction. A message between UAVs that
+/// arrives meanwhile can move a reply to an earlier instant (deliver).
 class Coordinator::Impl {
  public:
   Impl(sim::Simulator& simulator, record::Recorder& recorder, RunOptions options,
@@ -47,7 +47,6 @@ class Coordinator::Impl {
   void turn();
   void start();
   record::Header make_header() const;
-  uav::Catalogue catalogue_of(const Session& session) const;
   bool advance();
   SimTime next_stop() const;
   void watch_batteries();
@@ -77,21 +76,11 @@ class Coordinator::Impl {
   void break_off(Session& session, link::Refusal::Reason reason, const Fault& fault);
   Standing standing(const Session& session) const;
   bool settle_boards();
-  static record::Annotation annotation_of(const Session& session, const Sent& sent);
   void begin(Sent sent);
-  record::Interaction make_entry(const Session& session, const Sent& sent) const;
-  ExecTime charge(const Sent& sent, record::Interaction& entry);
-  ExecTime accept(Session& session, PendingInteraction& pending);
-  ExecTime accept_read(Session& session, PendingInteraction& pending, const link::ReadSensor& read);
-  ExecTime accept_command(Session& session, PendingInteraction& pending,
-                          const link::SetVelocity& set);
-  static std::vector<link::StageTime> time_given(const Session& session);
   Session* find(link::PeerId peer);
   void refuse(link::PeerId peer, link::Refusal::Reason reason, const std::string& message);
 
   // Radio.
-  ExecTime accept_receive(PendingInteraction& pending, std::size_t uav,
-                          const link::ReceiveMessage& receive);
   SimTime next_radio() const;
   void settle_radio();
   void deliver(Session& session, ExecTime arrived_at);
@@ -103,8 +92,6 @@ class Coordinator::Impl {
   void reply(Session& session, std::size_t open_index, SimTime st);
   void leave(Session& session);
   void computes_from(std::size_t uav, ExecTime at, WallTime since);
-  std::optional<uav::CameraSample> image_to_record(Session& session, const link::Request& request,
-                                                   const link::Reply& reply) const;
 
   Timeline& time_of(const Session& session) { return times_[session.uav]; }
   const Timeline& time_of(const Session& session) const { return times_[session.uav]; }

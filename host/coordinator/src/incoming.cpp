@@ -1,5 +1,6 @@
 #include "admission.h"
 #include "coordinator_impl.h"
+#include "plan.h"
 
 #include <algorithm>
 #include <utility>
@@ -11,14 +12,15 @@
 
 /// Messages from SUTs: Hello, requests, progress, annotations, and the end of a connection. Each
 /// message is validated first; a protocol violation ends the run. A valid request is planned
-/// (accept), held at the barrier, and answered by release_ready() in outgoing.cpp.
+/// (plan.cpp), held by its Timeline, and answered by release_ready() in outgoing.cpp.
 namespace tether::coordinator {
 
 namespace {
 
-/// In the order of Request's body.
-constexpr const char* kKinds[] = {"sensor", "command", "sleep",  "finish",
-                                  "send",   "receive", "battery"};
+record::Annotation annotation_of(const Session& session, const Sent& sent) {
+  const auto& note = std::get<link::Annotation>(sent.message);
+  return {session.uav_name, sent.at, note.topic, note.json};
+}
 
 }  // namespace
 
@@ -208,16 +210,11 @@ bool Coordinator::Impl::settle_boards() {
   return has_changed;
 }
 
-record::Annotation Coordinator::Impl::annotation_of(const Session& session, const Sent& sent) {
-  const auto& note = std::get<link::Annotation>(sent.message);
-  return {session.uav_name, sent.at, note.topic, note.json};
-}
-
 // The SUT does what it did when its time was recorded. Its timestamp follows from the time given.
 void Coordinator::Impl::check_replay(Session& session, const link::Request& request) {
   const auto* read = std::get_if<link::ReadSensor>(&request.body);
   const std::string call =
-      read ? stepper_.sampler(session.uav).name(read->sensor) : kKinds[request.body.index()];
+      read ? stepper_.sampler(session.uav).name(read->sensor) : kind_of(request);
   ExecTime due = time_of(session).resumed_at();
   for (const link::StageTime& time : request.stages) due += time.computing;
   std::optional<std::string> difference = session.replay->take(call, request.stages);
@@ -232,106 +229,15 @@ void Coordinator::Impl::check_replay(Session& session, const link::Request& requ
                    *difference)});
 }
 
-std::vector<link::StageTime> Coordinator::Impl::time_given(const Session& session) {
-  return session.replay ? session.replay->given() : std::vector<link::StageTime>();
-}
-
 // Plans a request and holds its reply.
 void Coordinator::Impl::begin(Sent sent) {
   Session& session = sessions_[sent.uav];
-  PendingInteraction pending{.entry = make_entry(session, sent)};
+  PendingInteraction pending = arrive(session, std::move(sent), time_of(session));
   record::Interaction& entry = pending.entry;
-  entry.request_at = charge(sent, entry);
-  pending.request = std::get<link::Request>(std::move(sent.message));
   stepper_.ends_computing(session.uav, same_instant(entry.request_at));
-  entry.reply_at = accept(session, pending);
+  entry.reply_at = plan(session, pending, stepper_, radio_);
   if (const auto due = time_of(session).hold(entry)) server_->send(session.peer, *due);
   session.open.push_back(std::move(pending));
-}
-
-record::Interaction Coordinator::Impl::make_entry(const Session& session, const Sent& sent) const {
-  const auto& request = std::get<link::Request>(sent.message);
-  const Timeline& time = time_of(session);
-  record::Interaction entry;
-  entry.uav = session.uav_name;
-  entry.sequence = request.sequence;
-  entry.kind = kKinds[request.body.index()];
-  entry.st_at_arrival = sent.st;
-  entry.wall_at_arrival = sent.wall;
-  entry.computed = sent.work;
-  entry.stamped = time.facts().is_stamped;
-  if (entry.stamped)
-    for (const auto& [stage, computing] : request.stages)
-      entry.stages.push_back({.stage = printable(stage),
-                              .computing = computing,
-                              .is_unknown = session.replay && !session.replay->knows(stage)});
-  if (request.previous_round_trip > Duration(0) && time.last_hold() > Duration(0))
-    entry.previous_link_time = request.previous_round_trip - time.last_hold();
-  return entry;
-}
-
-// The timestamp of a request.
-ExecTime Coordinator::Impl::charge(const Sent& sent, record::Interaction& entry) {
-  const sync::Arrival arrival = times_[sent.uav].arrive(sent);
-  entry.lag = arrival.lag;
-  if (arrival.violation)
-    entry.violation =
-        fmt::format("{} by {} ns", name(arrival.violation->kind), arrival.violation->size.count());
-  return arrival.charged_at;
-}
-
-// Plans the interaction; returns the timestamp of its reply.
-ExecTime Coordinator::Impl::accept(Session& session, PendingInteraction& pending) {
-  const link::Request& request = pending.request;
-  if (const auto* read = std::get_if<link::ReadSensor>(&request.body))
-    return accept_read(session, pending, *read);
-  if (const auto* set = std::get_if<link::SetVelocity>(&request.body))
-    return accept_command(session, pending, *set);
-  if (const auto* sleep = std::get_if<link::Sleep>(&request.body)) {
-    const ExecTime until = sleep->is_relative
-                               ? pending.entry.request_at + (sleep->until - request.issued_at)
-                               : sleep->until;
-    pending.entry.sleep_until = until;
-    return std::max(pending.entry.request_at, until);
-  }
-  if (const auto* send = std::get_if<link::SendMessage>(&request.body)) {
-    radio_.send(session.uav, request.sequence, same_instant(pending.entry.request_at), *send);
-    return pending.entry.request_at;
-  }
-  if (const auto* receive = std::get_if<link::ReceiveMessage>(&request.body))
-    return accept_receive(pending, session.uav, *receive);
-  if (std::holds_alternative<link::ReadBattery>(request.body)) return pending.entry.request_at;
-  session.finish = std::get<link::Finish>(request.body);
-  session.finish->outcome = printable(session.finish->outcome);
-  return pending.entry.request_at;
-}
-
-// The reply to a read without a measurement is due at once.
-ExecTime Coordinator::Impl::accept_read(Session& session, PendingInteraction& pending,
-                                        const link::ReadSensor& read) {
-  record::Interaction& entry = pending.entry;
-  entry.sensor = stepper_.sampler(session.uav).name(read.sensor);
-  entry.latest = read.latest;
-  entry.only_if_available = read.only_if_available;
-  const auto measurement =
-      stepper_.plan(session.uav, entry.sequence, read, same_instant(entry.request_at));
-  if (!measurement) return entry.request_at;
-
-  entry.sample_index = measurement->index;
-  entry.sampled_at = measurement->sampled_at;
-  entry.available_at = measurement->available_at;
-  return std::max(entry.request_at, same_instant(measurement->available_at));
-}
-
-ExecTime Coordinator::Impl::accept_command(Session& session, PendingInteraction& pending,
-                                           const link::SetVelocity& set) {
-  const SimTime effect = same_instant(pending.entry.request_at) + session.command_latency;
-  pending.entry.effect_at =
-      stepper_.command(session.uav, pending.entry.sequence, set.command, effect);
-  const auto& [velocity, yaw_rate] = set.command;
-  pending.entry.command = {velocity.x, velocity.y, velocity.z, yaw_rate};
-  pending.entry.grid_error = *pending.entry.effect_at - effect;
-  return pending.entry.request_at;
 }
 
 }  // namespace tether::coordinator

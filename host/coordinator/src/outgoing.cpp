@@ -7,6 +7,23 @@
 /// Replies to SUTs, sent when the barrier releases them.
 namespace tether::coordinator {
 
+namespace {
+
+/// None: not an image, or not one to record.
+std::optional<uav::CameraSample> image_to_record(Session& session, const link::Request& request,
+                                                 const link::Reply& reply,
+                                                 const RunOptions& options) {
+  if (!options.record_images || !reply.sample) return std::nullopt;
+  const auto* image = std::get_if<uav::CameraSample>(&*reply.sample);
+  if (image == nullptr) return std::nullopt;
+  auto& last = session.recorded_image_at[std::get<link::ReadSensor>(request.body).sensor];
+  if (last && image->sampled_at < *last + options.image_period) return std::nullopt;
+  last = image->sampled_at;
+  return *image;
+}
+
+}  // namespace
+
 void Coordinator::Impl::release_ready() {
   settle();
   // Other threads draw ahead: while one picture is drawn for its reply, those of other SUTs, and
@@ -40,10 +57,11 @@ void Coordinator::Impl::reply(Session& session, std::size_t open_index, SimTime 
   link::Reply message{.sequence = entry.sequence,
                       .resume_at = entry.reply_at,
                       .sample = stepper_.measure(session.uav, entry),
-                      .computing = time_given(session)};
+                      .computing = session.time_given()};
   if (entry.kind == record::kBattery) message.battery = stepper_.read_battery(session.uav, entry);
   if (pending.is_promised) radio_.receive(session.uav, entry, message);
-  const std::optional<uav::CameraSample> image = image_to_record(session, pending.request, message);
+  const std::optional<uav::CameraSample> image =
+      image_to_record(session, pending.request, message, options_);
   entry.st_at_release = st;
   entry.grid_error = std::max(entry.grid_error, same_instant(entry.reply_at) - st);
   entry.wall_at_release = host_clock_();
@@ -61,17 +79,6 @@ void Coordinator::Impl::reply(Session& session, std::size_t open_index, SimTime 
   log_.interaction(st, std::move(entry));
   if (image) log_.image(st, session.uav_name, sensor, *image);
   if (is_last) leave(session);
-}
-
-std::optional<uav::CameraSample> Coordinator::Impl::image_to_record(
-    Session& session, const link::Request& request, const link::Reply& reply) const {
-  if (!options_.record_images || !reply.sample) return std::nullopt;
-  const auto* image = std::get_if<uav::CameraSample>(&*reply.sample);
-  if (image == nullptr) return std::nullopt;
-  auto& last = session.recorded_image_at[std::get<link::ReadSensor>(request.body).sensor];
-  if (last && image->sampled_at < *last + options_.image_period) return std::nullopt;
-  last = image->sampled_at;
-  return *image;
 }
 
 // What the threads of a concurrent SUT compute while others wait is not known; what a SUT on a

@@ -4,22 +4,10 @@
 
 #include <fmt/format.h>
 
-#include <tether/link/codec.h>
-
 /// Events of the radio in the run: each one is handled in the order of (time, UAV), when ST is at
 /// its step, and no SUT can send an earlier one any more. A message that arrives for an open
 /// receive makes its reply due at that instant.
 namespace tether::coordinator {
-
-ExecTime Coordinator::Impl::accept_receive(PendingInteraction& pending, std::size_t uav,
-                                           const link::ReceiveMessage& receive) {
-  record::Interaction& entry = pending.entry;
-  const ExecTime last = from_ns<ExecTime>(link::kMaxTimestampNs - 1);
-  entry.receive_until =
-      receive.timeout < last - entry.request_at ? entry.request_at + receive.timeout : last;
-  pending.is_promised = radio_.promise(uav);
-  return pending.is_promised ? entry.request_at : *entry.receive_until;
-}
 
 // How far ST may advance before something is due here.
 SimTime Coordinator::Impl::next_radio() const {

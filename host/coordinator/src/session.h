@@ -51,6 +51,10 @@ struct Session {
   ExecTime last_bound;          ///< then
 
   bool joined() const { return peer != 0; }
+  /// With the clock "replayed": what each stage takes until the next call.
+  std::vector<link::StageTime> time_given() const {
+    return replay ? replay->given() : std::vector<link::StageTime>();
+  }
 };
 
 }  // namespace tether::coordinator
