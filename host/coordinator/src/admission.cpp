@@ -61,9 +61,8 @@ std::optional<std::string> clock_fault(const link::Hello& hello,
                      asked, advice);
 }
 
-std::optional<std::string> build_fault(const link::Hello& hello,
-                                       const std::optional<timing::Replay>& replay) {
-  const auto other = replay ? replay->other_build(hello.build_id, hello.build) : std::nullopt;
+std::optional<std::string> build_fault(const link::Hello& hello, const GivenTime* replay) {
+  const auto other = replay ? replay->other_build(hello) : std::nullopt;
   if (!other) return std::nullopt;
   return fmt::format(
       "this is not the program that was recorded: {}. An exact replay needs the same program, "

@@ -24,7 +24,6 @@ std::optional<std::string> clock_fault(const link::Hello& hello,
                                        const std::optional<computer::Clock>& wanted);
 
 /// Why the program cannot be given the time of `replay`: it is another build. None if it can.
-std::optional<std::string> build_fault(const link::Hello& hello,
-                                       const std::optional<timing::Replay>& replay);
+std::optional<std::string> build_fault(const link::Hello& hello, const GivenTime* replay);
 
 }  // namespace tether::coordinator

@@ -58,7 +58,7 @@ std::vector<Session> make_sessions(const sim::World& world, const RunOptions& op
     sessions[i].uav_name = world.uavs[i].name;
     sessions[i].command_latency = options.uavs[i].command_latency;
     sessions[i].cores = options.uavs[i].cores;
-    sessions[i].replay = options.uavs[i].replay;
+    if (options.uavs[i].given_time) sessions[i].replay = options.uavs[i].given_time();
     sessions[i].recorded_image_at.resize(world.uavs[i].sensors.size());
   }
   return sessions;

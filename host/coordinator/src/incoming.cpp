@@ -121,7 +121,7 @@ void Coordinator::Impl::join(link::PeerId peer, const link::Hello& hello) {
     return refuse(peer, link::Refusal::Reason::kBadRequest, *fault);
   if (const auto fault = times_.fault_of(session.uav, hello))
     return refuse(peer, link::Refusal::Reason::kBadRequest, *fault);
-  if (const auto fault = build_fault(hello, session.replay))
+  if (const auto fault = build_fault(hello, session.replay.get()))
     return refuse(peer, link::Refusal::Reason::kBadRequest, *fault);
   session.peer = peer;
   joined_[peer] = session.uav;

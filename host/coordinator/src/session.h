@@ -12,7 +12,6 @@
 #include <tether/link/server.h>
 #include <tether/record/messages.h>
 #include <tether/sim/simulator.h>
-#include <tether/timing/replay.h>
 
 namespace tether::coordinator {
 
@@ -36,7 +35,7 @@ struct Session {
   link::PeerId peer = 0;  ///< 0: not joined
   link::Hello hello;
   std::uint64_t next_sequence = 1;
-  std::optional<timing::Replay> replay;  ///< with the clock "replayed"
+  std::unique_ptr<GivenTime> replay;  ///< with the clock "replayed"
   AnnotationBudget annotations;
   std::optional<link::Finish> finish;
 

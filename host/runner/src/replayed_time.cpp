@@ -1,5 +1,7 @@
 #include "replayed_time.h"
 
+#include <utility>
+
 #include <fmt/format.h>
 
 #include <tether/base/error.h>
@@ -15,7 +17,29 @@ timing::Timing read(const std::filesystem::path& file, const scenario::Scenario&
   return timing;
 }
 
+class Giver final : public coordinator::GivenTime {
+ public:
+  explicit Giver(timing::Replay replay) : replay_(std::move(replay)) {}
+
+  std::optional<std::string> other_build(const link::Hello& hello) const override {
+    return replay_.other_build(hello.build_id, hello.build);
+  }
+  std::vector<link::StageTime> given() const override { return replay_.given(); }
+  std::optional<std::string> take(const std::string& call,
+                                  const std::vector<link::StageTime>& stages) override {
+    return replay_.take(call, stages);
+  }
+  bool knows(const std::string& stage) const override { return replay_.knows(stage); }
+
+ private:
+  timing::Replay replay_;
+};
+
 }  // namespace
+
+std::function<std::unique_ptr<coordinator::GivenTime>()> giver_of(timing::Replay replay) {
+  return [replay = std::move(replay)] { return std::make_unique<Giver>(replay); };
+}
 
 ReplayedTime replayed_time(const TrialSpec& spec) {
   ReplayedTime time;

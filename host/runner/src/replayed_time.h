@@ -1,8 +1,11 @@
 #pragma once
 
+#include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include <tether/coordinator/given_time.h>
 #include <tether/record/messages.h>
 #include <tether/runner/trial.h>
 #include <tether/timing/replay.h>
@@ -16,6 +19,9 @@ struct ReplayedTime {
   bool has_waits = false;             ///< it was wall time: what the program waited is in it
   std::vector<std::string> warnings;  ///< about the timing file, one line each
 };
+
+/// Makes what gives a SUT that time, each time from its first call on.
+std::function<std::unique_ptr<coordinator::GivenTime>()> giver_of(timing::Replay replay);
 
 /// @throws Error(kBadFile) with the file if a timing file cannot be read, is of another scenario,
 /// or has not what the condition asks for.

@@ -160,7 +160,7 @@ coordinator::RunOptions run_options(const TrialSpec& spec, const TrialInputs& in
       uav.launcher += " in " + own.target->program_folder;
     uav.cores = spec.sut_place(i) == SutPlace::kThisMachine ? known_cores() : 0;
     if (inputs.replayed.replays.empty()) continue;
-    uav.replay = inputs.replayed.replays[i];
+    uav.given_time = giver_of(inputs.replayed.replays[i]);
     uav.replayed_from = inputs.replayed.from;
   }
   share_boards(spec.condition, options);

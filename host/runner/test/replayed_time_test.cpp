@@ -48,6 +48,24 @@ TEST_F(ReplayedTimeTest, GivesEachUavItsTimeAndSaysWhereFrom) {
   EXPECT_TRUE(load().replays.empty());
 }
 
+TEST_F(ReplayedTimeTest, EachRunIsGivenTheTimeFromItsFirstCallOn) {
+  spec_.condition.replay->mode = computer::ReplayMode::kExact;
+  const std::vector<link::StageTime> first{{"a", Duration(5)}};
+  const auto giver = giver_of(load().replays.at(0));
+  link::Hello hello;
+  hello.build_id = "0b";
+  for (int run = 0; run < 2; ++run) {
+    const auto given = giver();
+    EXPECT_TRUE(given->other_build(hello));
+    EXPECT_TRUE(given->knows("a"));
+    EXPECT_FALSE(given->knows("b"));
+    EXPECT_EQ(given->given(), first);
+    EXPECT_FALSE(given->take("finish", first));
+    EXPECT_TRUE(given->given().empty());
+    EXPECT_TRUE(given->take("finish", first)) << "the recorded run has ended";
+  }
+}
+
 TEST_F(ReplayedTimeTest, RefusesTimingThatDoesNotFit) {
   spec_.condition.replay->mode = computer::ReplayMode::kExact;
   spec_.seed = 4;

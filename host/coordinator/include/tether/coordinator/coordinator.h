@@ -10,13 +10,13 @@
 
 #include <tether/base/time.h>
 #include <tether/computer/clock.h>
+#include <tether/coordinator/given_time.h>
 #include <tether/link/server.h>
 #include <tether/radio/settings.h>
 #include <tether/record/messages.h>
 #include <tether/record/writer.h>
 #include <tether/sim/simulator.h>
 #include <tether/sync/barrier_synchronizer.h>
-#include <tether/timing/replay.h>
 #include <tether/uav/sensor_timing.h>
 
 /// The part between the simulator and the SUTs (paper, Section II and Fig. 2). It keeps the
@@ -33,8 +33,8 @@ struct UavOptions {
   std::optional<computer::Clock> clock{};
   /// Cores of the SUT's machine; they limit how fast its CPU time can grow. 0: not known.
   int cores = 0;
-  /// With the clock "replayed": gives the SUT its time, from where `replayed_from` says.
-  std::optional<timing::Replay> replay{};
+  /// With the clock "replayed": makes what gives the SUT its time, from where `replayed_from` says.
+  std::function<std::unique_ptr<GivenTime>()> given_time{};
   std::optional<record::ReplayInfo> replayed_from{};
   /// Index in RunOptions::boards of the computer that its SUT shares with others; none: it has one
   /// of its own. The clock must then be given: kWall on a real one, otherwise kCpu, kScripted,
