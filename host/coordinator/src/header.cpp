@@ -144,8 +144,7 @@ record::Header Coordinator::Impl::make_header() const {
     const bool is_shared =
         std::ranges::any_of(header.suts, [&](const auto& sut) { return sut.board == board.name; });
     if (is_shared)
-      header.boards.push_back(
-          {.name = board.name, .cores = board.is_real ? 0 : board.cores, .is_real = board.is_real});
+      header.boards.push_back({.name = board.name, .cores = board.cores, .is_real = board.is_real});
   }
   for (const sim::PlacedAnchor& anchor : world().anchors)
     header.anchors.push_back(describe(anchor));

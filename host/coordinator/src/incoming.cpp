@@ -158,7 +158,7 @@ Standing Coordinator::Impl::standing(const Session& session) const {
           .concurrent = session.hello.concurrent,
           .finished = session.finish.has_value(),
           .held = time.is_held(),
-          .bound = time.et() ? std::optional(time.last_stamp()) : std::nullopt,
+          .bound = time.last_stamp(),
           .open_calls = session.open.size() + (time.unsettled() ? 1U : 0U),
           .received_bytes = session.received_bytes,
           .next_sequence = session.next_sequence,

@@ -151,7 +151,7 @@ TEST_F(SharedBoard, IsNotSharedInFreeRunning) {
 
 TEST_F(SharedBoard, IsNotModelledIfItIsRealAndThenNeedsConcurrentSuts) {
   make_shared(2, 1);
-  options_.boards[0].is_real = true;
+  options_.boards = {{.name = "obc", .cores = 0, .is_real = true}};
   remake();
   const link::PeerId serial = server_->add_sut(hello(name(0)), {});
   for (const std::size_t uav : {0U, 1U})

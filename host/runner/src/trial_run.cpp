@@ -124,7 +124,7 @@ std::map<std::size_t, os::CountFile> count_files(const TrialSpec& spec) {
 void share_boards(const scenario::Condition& condition, coordinator::RunOptions& options) {
   for (const scenario::RealBoard& board : real_boards(condition, options.uavs.size())) {
     for (const std::size_t uav : board.uavs) options.uavs[uav].board = options.boards.size();
-    options.boards.push_back({.name = board.name, .is_real = true});
+    options.boards.push_back({.name = board.name, .cores = 0, .is_real = true});
   }
   for (std::size_t i = 0; i < condition.computers.size(); ++i) {
     const bool is_real = condition.computers[i].clock.kind == computer::ClockKind::kWall;

@@ -26,9 +26,7 @@ class UnstampedTime final : public OwnTime {
     if (is_computing()) barrier().progress(uav(), timer_.read(now));
   }
   sync::Arrival arrive(const Sent& sent) override {
-    Sent timed = sent;
-    timed.at = timer_.pause(sent.wall);
-    return OwnTime::arrive(timed);
+    return arrive_at(timer_.pause(sent.wall), sent.st);
   }
   void replied(const record::Interaction& call) override {
     OwnTime::replied(call);

@@ -33,11 +33,7 @@ class OwnTime : public Timeline {
     barrier_->progress(uav(), progress.reached);
     return std::nullopt;
   }
-  sync::Arrival arrive(const Sent& sent) override {
-    calls_ = calls_at(sent.st) + 1;
-    called_at_ = sent.st;
-    return barrier_->arrive(uav(), sent.at, sent.st);
-  }
+  sync::Arrival arrive(const Sent& sent) override { return arrive_at(sent.at, sent.st); }
   std::optional<link::Due> hold(const record::Interaction& call) override {
     barrier_->hold({uav(), call.reply_at, call.sequence,
                     call.receive_until ? std::optional(least_delay_) : std::nullopt});
@@ -63,6 +59,11 @@ class OwnTime : public Timeline {
   OwnTime(const SutStart& sut, const Facts& facts);
   static Facts facts_of(const computer::Clock& clock);
   sync::BarrierSynchronizer& barrier() { return *barrier_; }
+  sync::Arrival arrive_at(ExecTime stamp, SimTime st) {
+    calls_ = calls_at(st) + 1;
+    called_at_ = st;
+    return barrier_->arrive(uav(), stamp, st);
+  }
 
  private:
   sync::BarrierSynchronizer* barrier_;

@@ -11,7 +11,7 @@ class SharedTime final : public OwnTime {
       : OwnTime(sut, facts_of(sut.hello.clock)), cores_(&cores), program_(program) {}
 
   using Timeline::uav;
-  ExecTime last_stamp() const override { return last_stamp_; }
+  std::optional<ExecTime> last_stamp() const override { return last_stamp_; }
   bool is_computing() const override { return !unsettled() && OwnTime::is_computing(); }
   const link::Request* unsettled() const override {
     return messages_.empty() ? nullptr : std::get_if<link::Request>(&messages_.back().message);

@@ -60,9 +60,8 @@ class Timeline {
   virtual std::optional<ExecTime> et() const { return std::nullopt; }
   /// The same; 0 if there is none.
   ExecTime bound() const { return et().value_or(ExecTime{}); }
-  /// The last stamp that it is known to have reached by its own count; of a held SUT also that of
-  /// its reply.
-  virtual ExecTime last_stamp() const { return bound(); }
+  /// The same by the SUT's own count, which on a modelled board is behind its ET.
+  virtual std::optional<ExecTime> last_stamp() const { return et(); }
   /// Timestamp of its last reply, from which on it computes.
   ExecTime resumed_at() const { return resumed_at_; }
   /// Whether the coordinator waits for its next message.

@@ -50,7 +50,7 @@ const TimeCase kTimeCases[] = {
     {.name = "group of a real board",
      .clock = ClockKind::kWall,
      .is_concurrent = true,
-     .board = Board{.name = "obc", .is_real = true},
+     .board = Board{.name = "obc", .cores = 0, .is_real = true},
      .facts = {false, true, false, false, true}},
     {.name = "modelled board",
      .board = Board{.name = "obc", .cores = 2},

@@ -50,7 +50,7 @@ struct UavOptions {
 /// a real one, on which they run and are stopped as one group (tether-exec).
 struct Board {
   std::string name;
-  int cores = 1;         ///< ≥ 1; ignored of a real one
+  int cores = 1;         ///< ≥ 1; of a real one 0
   bool is_real = false;  ///< only concurrent SUTs are accepted on it, unless in free running
 };
 
