@@ -48,6 +48,12 @@ void fields(auto& io, Maybe<MetricValue> auto& m) {
   if (!m.value) io("missing_because", m.missing_because);
 }
 
+void fields(auto& io, Maybe<scenario::Varied> auto& m) {
+  io("name", m.name);
+  io("what", m.what);
+  io("value", m.value);
+}
+
 void fields(auto& io, Maybe<ReplayReport> auto& m) {
   fields(io, m.from);
   io("unknown_stages", m.unknown_stages);
@@ -241,6 +247,7 @@ void fields(auto& io, Maybe<TrialResult> auto& m) {
   }
   io.some("target", m.target);
   io.some("settings", m.settings);
+  io.some("varied", m.varied);
   if (io.has("emulator", !m.emulator.program.empty())) io("emulator", m.emulator);
   io.optional("replay", m.replay);
   io("real_time_factor", m.real_time_factor);

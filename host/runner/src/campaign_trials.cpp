@@ -22,17 +22,20 @@ namespace {
 /// changes of UAVs is applied, so that errors are found before anything is written. Conditions that
 /// were slowed down differ in their clocks only.
 void try_conditions(const scenario::CampaignScenario& entry, const sim::World& world,
-                    const FindBackEnd& find_back_end, const WarningSink& warn) {
+                    std::uint64_t seed, const FindBackEnd& find_back_end, const WarningSink& warn) {
   std::set<std::string> prepared;
   for (const std::string& name : entry.conditions) {
     const scenario::Condition& condition = *entry.scenario.find_condition(name);
     const bool is_slowed = !condition.slowed_from.empty();
     if (!prepared.insert(is_slowed ? condition.slowed_from : name).second) continue;
     sim::World copy = world;
+    const BackEnd back_end = find_back_end(condition.simulator);
+    const auto varied = scenario::vary(entry.scenario.variations, seed, back_end.reads_world, copy);
     scenario::resolve_step(entry.scenario, copy);
     scenario::resolve_energy(entry.scenario, condition, copy, warn);
     scenario::resolve_sensors(entry.scenario, condition, copy, warn);
-    find_back_end(condition.simulator).prepare(std::move(copy), warn);
+    scenario::vary_mountings(entry.scenario.variations, varied, copy);
+    back_end.prepare(std::move(copy), warn);
   }
 }
 
@@ -77,7 +80,7 @@ CampaignFiles files_of_trials(const scenario::Campaign& campaign, const FindBack
     const sim::World world = worlds.load(
         scenario::world_request(entry.scenario, campaign.seeds.front()), warnings.sink());
     files.insert(files.end(), world.files.begin(), world.files.end());
-    try_conditions(entry, world, find_back_end, warnings.sink());
+    try_conditions(entry, world, campaign.seeds.front(), find_back_end, warnings.sink());
   }
   for (const std::string& name : simulators(campaign)) {
     const auto own = find_back_end(name).files();

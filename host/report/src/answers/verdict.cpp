@@ -96,6 +96,8 @@ void count(ConditionVerdict& verdict, const campaign::TrialResult& trial) {
     if (const std::string line = warning.subject + " " + warning.message;
         is_left_out(warning) && std::ranges::count(verdict.left_out, line) == 0)
       verdict.left_out.push_back(line);
+  for (const scenario::Varied& one : trial.varied)
+    if (std::ranges::count(verdict.varied, one.what) == 0) verdict.varied.push_back(one.what);
   if (trial.replay)
     for (const std::string& stage : trial.replay->unknown_stages)
       if (std::ranges::count(verdict.uncharged, stage) == 0) verdict.uncharged.push_back(stage);

@@ -7,6 +7,7 @@
 #include "tables/read_replay.h"
 #include "tables/read_sensor_profile.h"
 #include "tables/read_sut.h"
+#include "tables/read_vary.h"
 
 #include <algorithm>
 #include <array>
@@ -410,6 +411,7 @@ Scenario read_scenario(const std::filesystem::path& file, const std::vector<Sett
   read_uavs(root, scenario);
   require_users(scenario);
   scenario.radio = read_radio(root);
+  scenario.variations = read_vary(root);
   read_conditions(root, scenario);
   apply_to_profiles(of_profiles, scenario);
   check_profile_names(scenario);

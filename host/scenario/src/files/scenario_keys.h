@@ -6,7 +6,7 @@
 /// The keys of a scenario and of its tables.
 namespace tether::scenario {
 
-inline constexpr std::array<std::string_view, 16> kScenarioKeys = {"name",
+inline constexpr std::array<std::string_view, 17> kScenarioKeys = {"name",
                                                                    "description",
                                                                    "world",
                                                                    "step_ms",
@@ -21,7 +21,8 @@ inline constexpr std::array<std::string_view, 16> kScenarioKeys = {"name",
                                                                    "condition",
                                                                    "metric",
                                                                    "record",
-                                                                   "radio"};
+                                                                   "radio",
+                                                                   "vary"};
 
 inline constexpr std::array<std::string_view, 12> kUavKeys = {
     "name",    "model",   "position_m", "yaw_deg", "yaw_spread_deg", "command_latency_ms",

@@ -38,6 +38,13 @@ void keep_first_uavs(Scenario& scenario, const std::string& count) {
                             "1 to {}",
                             scenario.uavs.size(), kUavCount, count, scenario.uavs.size()))
         .about(std::string(kUavCount));
+  const auto is_dropped = [&](const Variation& variation) {
+    const std::string_view owner = std::string_view(variation.of).substr(0, variation.of.find('.'));
+    return std::any_of(scenario.uavs.begin() + static_cast<std::ptrdiff_t>(kept),
+                       scenario.uavs.end(),
+                       [&](const UavSetup& uav) { return uav.placement.name == owner; });
+  };
+  std::erase_if(scenario.variations, is_dropped);
   scenario.uavs.resize(kept);
   std::erase_if(scenario.metrics, [&](const Metric& metric) {
     return std::ranges::none_of(
@@ -75,11 +82,23 @@ bool may_be_added(const KeyTable& table, const std::string& key) {
   return dots < 2 && !is_free && std::ranges::count(table.keys, first) > 0;
 }
 
+/// "vary.NAME.value", of a table that the file has.
+bool holds_a_variation(const Setting& setting, const toml::Table& root) {
+  constexpr std::string_view kFirst = "vary.", kLast = ".value";
+  const std::string_view key = setting.key;
+  if (!key.starts_with(kFirst) || !key.ends_with(kLast) || !root.has("vary")) return false;
+  const std::string_view name =
+      key.substr(kFirst.size(), key.size() - std::min(key.size(), kFirst.size() + kLast.size()));
+  return root.table("vary").has(name);
+}
+
 }  // namespace
 
 bool apply(const Setting& setting, toml::Document& scenario) {
   for (const KeyTable& table : kKeyTables)
     if (scenario.replace(table.from + setting.key, setting.value) > 0) return true;
+  if (holds_a_variation(setting, scenario.root()))
+    return scenario.add(setting.key, setting.value) > 0;
   for (const KeyTable& table : kKeyTables)
     if (may_be_added(table, setting.key))
       return scenario.add(table.from + setting.key, setting.value) > 0;

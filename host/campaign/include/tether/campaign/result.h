@@ -243,6 +243,7 @@ struct TrialResult {
   record::EmulatorInfo emulator{};   ///< of a counted target
   /// Values of the scenario's file that were replaced (`tether run --set`, sweeps).
   std::map<std::string, std::string> settings{};
+  std::vector<scenario::Varied> varied{};  ///< what this flight's seed drew
   /// Names of the profiles in use, in the order of their layers: a later one overrides an earlier.
   std::vector<std::string> profiles;
   Outcome outcome = Outcome::kFailed;

@@ -112,7 +112,8 @@ struct ConditionVerdict {
   std::vector<std::string> left_out{};
   /// Stages that the flights computed for nothing: times are replayed, and have none of them.
   std::vector<std::string> uncharged{};
-  bool mixes_builds = false;  ///< of the program of a UAV, from flight to flight
+  std::vector<std::string> varied{};  ///< what the scenario varies from flight to flight
+  bool mixes_builds = false;          ///< of the program of a UAV, from flight to flight
   std::optional<Pace> pace{};
   std::string unknown_pace{};        ///< why it is not known; empty: there is none to know
   std::optional<MissReason> miss{};  ///< of the three rulings on a missed goal

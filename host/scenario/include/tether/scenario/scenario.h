@@ -18,6 +18,7 @@
 #include <tether/scenario/metric.h>
 #include <tether/scenario/profile.h>
 #include <tether/scenario/target.h>
+#include <tether/scenario/vary.h>
 #include <tether/sim/world.h>
 #include <tether/uav/sensor_timing.h>
 
@@ -142,9 +143,10 @@ struct Scenario {
   Duration connect_limit{std::chrono::seconds(30)};  ///< of WT until every SUT has joined
   /// A contact that is harder misses the goal (record::Contact::speed_m_s); inf: none does.
   double max_contact_speed_m_s = kHardContact_m_s;
-  std::vector<Computer> computers{};  ///< [[target]]s
-  std::vector<UavSetup> uavs;         ///< at least one
-  radio::Settings radio{};            ///< between them
+  std::vector<Computer> computers{};    ///< [[target]]s
+  std::vector<UavSetup> uavs;           ///< at least one
+  radio::Settings radio{};              ///< between them
+  std::vector<Variation> variations{};  ///< what differs from flight to flight
   std::vector<std::string> anchors;
   FileLocation anchors_at{};          ///< of their key; empty: there is none
   std::vector<Condition> conditions;  ///< at least one; the first is the default
