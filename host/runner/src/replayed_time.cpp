@@ -37,8 +37,8 @@ class Giver final : public coordinator::GivenTime {
 
 }  // namespace
 
-std::function<std::unique_ptr<coordinator::GivenTime>()> giver_of(timing::Replay replay) {
-  return [replay = std::move(replay)] { return std::make_unique<Giver>(replay); };
+std::function<std::unique_ptr<coordinator::GivenTime>()> giver_of(const timing::Replay& replay) {
+  return [replay] { return std::make_unique<Giver>(replay); };
 }
 
 ReplayedTime replayed_time(const TrialSpec& spec) {

@@ -21,7 +21,7 @@ struct ReplayedTime {
 };
 
 /// Makes what gives a SUT that time, each time from its first call on.
-std::function<std::unique_ptr<coordinator::GivenTime>()> giver_of(timing::Replay replay);
+std::function<std::unique_ptr<coordinator::GivenTime>()> giver_of(const timing::Replay& replay);
 
 /// @throws Error(kBadFile) with the file if a timing file cannot be read, is of another scenario,
 /// or has not what the condition asks for.
