@@ -103,6 +103,9 @@ void fields(auto& io, Is<ReadSensor> auto& m) {
           "is larger than any catalogue"});
   io("latest", m.latest);
   io("only_if_available", m.only_if_available);
+  io("queue", m.queue, Default{1u},
+     Rule{[](std::uint32_t queue) { return queue >= 1 && queue <= kMaxQueue; },
+          "is not within 1..4096"});
 }
 void fields(auto& io, Is<SetVelocity> auto& m) {
   io.require([&m] { return uav::is_valid(m.command); }, "velocity command",

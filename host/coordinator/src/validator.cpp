@@ -74,6 +74,10 @@ MaybeFault body_fault(const link::ReadSensor& read, const Standing& sut) {
     return Fault{Kind::kNotAvailable,
                  fmt::format("a read \"if available\" of sensor \"{}\", which measures on demand",
                              sut.sensors.name(read.sensor))};
+  if (read.queue > 1 && !sut.sensors.is_periodic(read.sensor))
+    return Fault{Kind::kNotAvailable,
+                 fmt::format("a queue of sensor \"{}\", which measures on demand",
+                             sut.sensors.name(read.sensor))};
   return std::nullopt;
 }
 

@@ -105,6 +105,7 @@ TEST_F(Validator, ReadsNeedASensorOfTheUav) {
   expect(Kind::kNotAvailable, request(link::ReadSensor{2}));
   expect(std::nullopt, request(link::ReadSensor{0, false, true}));
   expect(Kind::kNotAvailable, request(link::ReadSensor{1, false, true}));
+  expect(Kind::kNotAvailable, request(link::ReadSensor{1, false, false, 2}));
 }
 
 TEST_F(Validator, ReadsOfTheBatteryNeedOne) {

@@ -22,6 +22,9 @@ class InterruptibleVehicle : public client::Vehicle {
   const uav::Catalogue& catalogue() const override { return vehicle_->catalogue(); }
   bool is_concurrent() const override { return vehicle_->is_concurrent(); }
 
+  Status set_queue(std::string_view sensor, std::uint32_t depth) override {
+    return vehicle_->set_queue(sensor, depth);
+  }
   Result<uav::Sample> read_any(std::string_view sensor, uav::SensorKind kind,
                                client::Read read) override {
     return unless_interrupted([&] { return vehicle_->read_any(sensor, kind, read); });

@@ -11,6 +11,7 @@ namespace tether::coordinator {
 std::optional<Measurement> Sampler::plan(std::uint64_t call, const link::ReadSensor& read,
                                          SimTime t) {
   SensorSchedule& schedule = sensors_[read.sensor].schedule;
+  schedule.set_queue(read.queue, t);
   const auto measurement = read.only_if_available ? schedule.choose_available(t, read.latest)
                                                   : schedule.choose(t, read.latest);
   if (!measurement) return std::nullopt;

@@ -60,17 +60,37 @@ Measurement SensorSchedule::choose(SimTime t, bool latest) const {
     return {unread_, t, t + uav::draw(timing->delay, {seed_, stream_, unread_})};
   if (const auto there = choose_available(t, latest)) return *there;
   if (const auto* timing = std::get_if<uav::PeriodicTiming>(&timing_))
-    return next_available(*timing, unread_);
+    return is_queued(latest) ? periodic(*timing, oldest_unread(*timing, t))
+                             : next_available(*timing, unread_);
   const SimTime next = uav::sampling_instant(std::get<Topic>(timing_).timing, unread_);
   return {unread_, next, next};
 }
 
 std::optional<Measurement> SensorSchedule::choose_available(SimTime t, bool latest) const {
-  if (const auto* timing = std::get_if<uav::PeriodicTiming>(&timing_))
-    return newest_available(*timing, t, latest ? 0 : unread_);
+  if (const auto* timing = std::get_if<uav::PeriodicTiming>(&timing_)) {
+    if (!is_queued(latest)) return newest_available(*timing, t, latest ? 0 : unread_);
+    const Measurement oldest = periodic(*timing, oldest_unread(*timing, t));
+    return oldest.available_at <= t ? std::optional(oldest) : std::nullopt;
+  }
   const auto newest = newest_sampled(std::get<Topic>(timing_).timing, t);
   if (!newest || !(latest || *newest >= unread_)) return std::nullopt;
   return Measurement{*newest, t, t};
+}
+
+void SensorSchedule::set_queue(std::uint32_t queue, SimTime t) {
+  queue_ = queue;
+  const auto* timing = std::get_if<uav::PeriodicTiming>(&timing_);
+  if (queue == 1 || queued_from_ || !timing) return;
+  const auto newest = newest_available(*timing, t, 0);
+  queued_from_ = newest ? newest->index : 0;
+}
+
+// A driver delivers in order: a measurement that is available early waits for the one before it.
+std::uint64_t SensorSchedule::oldest_unread(const uav::PeriodicTiming& timing, SimTime t) const {
+  const auto newest = newest_available(timing, t, 0);
+  const std::uint64_t end = newest ? newest->index + 1 : 0;
+  const std::uint64_t first_kept = end > queue_ ? end - queue_ : 0;
+  return std::max({unread_, queued_from_.value_or(0), first_kept});
 }
 
 void SensorSchedule::mark_read(const Measurement& measurement) {
@@ -86,7 +106,8 @@ std::uint64_t SensorSchedule::first_readable(SimTime t) const {
   const auto* timing = std::get_if<uav::PeriodicTiming>(&timing_);
   if (!timing) return unread_;
   const auto newest = newest_available(*timing, t, 0);
-  return newest ? newest->index : 0;
+  if (!newest) return 0;
+  return is_queued(false) ? std::min(newest->index, oldest_unread(*timing, t)) : newest->index;
 }
 
 }  // namespace tether::coordinator

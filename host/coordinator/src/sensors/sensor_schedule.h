@@ -27,8 +27,13 @@ class SensorSchedule {
   /// without delay. Periodic: one measurement per period, like a topic.
   static SensorSchedule in_free_running(const uav::SensorTiming& timing);
 
+  /// From a read at `t` on, the newest `queue` measurements wait to be read. The first time that it
+  /// is more than one, those before the newest one at `t` are gone.
+  void set_queue(std::uint32_t queue, SimTime t);
+
   /// The measurement for a read at `t`. Periodic: the newest that is available at `t` and not yet
-  /// read (with `latest`: read or not), else the first that is available after `t`. On demand:
+  /// read (with `latest`: read or not), else the first that is available after `t`. From a queue:
+  /// the oldest in it that was not yet read, in the order in which they were sampled. On demand:
   /// sampled at `t`.
   Measurement choose(SimTime t, bool latest) const;
   /// The measurement for a read at `t` that does not wait; none if none is available. @pre
@@ -57,7 +62,13 @@ class SensorSchedule {
   std::variant<uav::OnDemandTiming, uav::PeriodicTiming, Topic> timing_;
   std::uint64_t seed_;
   std::uint64_t stream_;
+  bool is_queued(bool latest) const { return queue_ > 1 && !latest; }
+  /// The first index that a read from the queue at `t` can return.
+  std::uint64_t oldest_unread(const uav::PeriodicTiming& timing, SimTime t) const;
+
   std::uint64_t unread_ = 0;  ///< first index after the last one that was read
+  std::uint32_t queue_ = 1;
+  std::optional<std::uint64_t> queued_from_{};  ///< none: there was no queue yet
 };
 
 }  // namespace tether::coordinator

@@ -125,5 +125,43 @@ TEST(SensorSchedule, AgreesWithTheDefinitionUnderRandomDelays) {
   }
 }
 
+// Against the definition: of the newest `queue` that are available, the oldest that was not read.
+TEST(SensorSchedule, AQueueAgreesWithItsDefinitionUnderRandomDelays) {
+  const uav::PeriodicTiming timing{Duration(100), Duration(17),
+                                   uav::NormalDelay{Duration(150), Duration(120)}};
+  KeyedRandom random({.seed = 6});
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    SensorSchedule schedule(timing, seed, 9);
+    std::vector<SimTime> available;
+    for (std::uint64_t k = 0; k < 900; ++k)
+      available.push_back(uav::sampling_instant(timing, k) + uav::draw(timing.delay, {seed, 9, k}));
+    const std::uint32_t queue = 2 + random.bits() % 6;
+    std::uint64_t unread = 0, begun_at = 0, readable = 0;
+    std::int64_t now = 0;
+    for (int i = 0; i < 200; ++i) {
+      now += random.bits() % 300;
+      const auto t = from_ns<SimTime>(now);
+      ASSERT_GE(schedule.first_readable(t), readable) << "what was dropped is not read later";
+      schedule.set_queue(queue, t);
+      std::uint64_t end = 0;
+      for (std::uint64_t k = 0; k < available.size(); ++k)
+        if (available[k] <= t) end = k + 1;
+      if (i == 0) begun_at = end > 0 ? end - 1 : 0;
+      const std::uint64_t oldest =
+          std::max({unread, begun_at, end > queue ? end - queue : std::uint64_t{0}});
+      const Measurement got = schedule.choose(t, false);
+      ASSERT_EQ(got.index, oldest) << "seed " << seed << ", read " << i;
+      const auto at_once = schedule.choose_available(t, false);
+      ASSERT_EQ(at_once.has_value(), got.available_at <= t);
+      readable = schedule.first_readable(t);
+      ASSERT_GE(got.index, readable);
+      ASSERT_TRUE(end == 0 || schedule.choose(t, true).index == end - 1) << "the latest";
+      schedule.mark_read(got);
+      unread = got.index + 1;
+      now = std::max(now, to_ns(got.available_at));
+    }
+  }
+}
+
 }  // namespace
 }  // namespace tether::coordinator

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <memory>
 #include <new>
 #include <string>
 #include <vector>
@@ -102,6 +103,34 @@ tether_status tether_read_camera(tether_vehicle* vehicle, const char* sensor, te
                                            *out = new tether_image(std::move(sample));
                                            return TETHER_OK;
                                          });
+}
+
+tether_status tether_set_queue(tether_vehicle* vehicle, const char* sensor,
+                               uint32_t depth) noexcept {
+  if (!are_given(vehicle, sensor)) return TETHER_INVALID;
+  return guarded([&] { return status_of(vehicle->vehicle->set_queue(sensor, depth)); });
+}
+
+tether_status tether_read_together(tether_vehicle* vehicle, const char* const* cameras,
+                                   size_t count, tether_image** out) noexcept {
+  if (!are_given(out, cameras)) return TETHER_INVALID;
+  for (std::size_t i = 0; i < count; ++i) {
+    out[i] = nullptr;
+    if (!are_given(cameras[i])) return TETHER_INVALID;
+  }
+  if (!are_given(vehicle)) return TETHER_INVALID;
+  if (count == 0) return fail(TETHER_INVALID, "no cameras are named");
+  return guarded([&] {
+    auto samples = tether::client::read_together<tether::uav::CameraSample>(
+        *vehicle->vehicle, {cameras, cameras + count});
+    if (!samples) return fail(samples.failure());
+    // Made first, so that no image is lost when memory runs out.
+    std::vector<std::unique_ptr<tether_image>> images;
+    for (auto& sample : *samples)
+      images.push_back(std::make_unique<tether_image>(std::move(sample)));
+    for (std::size_t i = 0; i < count; ++i) out[i] = images[i].release();
+    return tether_status{TETHER_OK};
+  });
 }
 
 tether_status tether_image_copy(const tether_image* image, tether_image** out) noexcept {

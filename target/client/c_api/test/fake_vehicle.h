@@ -54,6 +54,10 @@ class FakeVehicle final : public client::Vehicle {
     if (kind == uav::SensorKind::kImu) return answer(sensor, read, imu);
     return answer(sensor, read, range);
   }
+  Status set_queue(std::string_view sensor, std::uint32_t depth) override {
+    queues.emplace_back(sensor, depth);
+    return status();
+  }
   Result<uav::BatterySample> read_battery() override {
     if (failure) return *failure;
     return uav::BatterySample{from_ns<SimTime>(14), 12.5, 6.0, 0.75};
@@ -97,6 +101,7 @@ class FakeVehicle final : public client::Vehicle {
   uav::CameraSample image{from_ns<SimTime>(11), 3, 4, 2, {}};
   uav::ImuSample imu{from_ns<SimTime>(12), 4, {1, 2, 3}, {4, 5, 6}, {0.5, -0.5, 0.5, -0.5}};
   uav::RangeSample range{from_ns<SimTime>(13), 5, 1.5};
+  std::vector<std::pair<std::string, std::uint32_t>> queues;
   std::vector<std::pair<std::string, client::Read>> reads;
   std::vector<uav::VelocityCommand> commands;
   std::vector<std::string> said;

@@ -118,6 +118,28 @@ TEST(ReadBattery, GivesEveryField) {
   EXPECT_EQ(sample.charge, 0.0) << "a failed read clears its output";
 }
 
+TEST(SetQueue, PassesItsArguments) {
+  const Flown flown;
+  EXPECT_EQ(tether_set_queue(flown.vehicle, "imu", 20), TETHER_OK);
+  EXPECT_EQ(flown.fake->queues.at(0), (std::pair<std::string, std::uint32_t>("imu", 20)));
+  EXPECT_EQ(tether_set_queue(flown.vehicle, nullptr, 20), TETHER_INVALID);
+}
+
+TEST(ReadTogether, GivesAnImageOfEachOrNone) {
+  const Flown flown;
+  const char* const cameras[] = {"camera", "rgbd"};
+  tether_image* images[2] = {};
+  ASSERT_EQ(tether_read_together(flown.vehicle, cameras, 2, images), TETHER_OK);
+  for (tether_image* image : images) {
+    EXPECT_EQ(tether_image_rgb(image)[23], 9);
+    tether_image_free(image);
+  }
+  EXPECT_EQ(tether_read_together(flown.vehicle, cameras, 0, images), TETHER_INVALID);
+  flown.fake->failure = Failure{Failure::Kind::kRunEnded, "time limit"};
+  EXPECT_EQ(tether_read_together(flown.vehicle, cameras, 2, images), TETHER_RUN_ENDED);
+  EXPECT_EQ(images[1], nullptr);
+}
+
 TEST(Reading, WrongArgumentsReachNoVehicle) {
   const Flown flown;
   tether_range_sample sample;

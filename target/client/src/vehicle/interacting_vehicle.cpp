@@ -108,6 +108,20 @@ Status InteractingVehicle::usable() const {
 
 // --- sensors ------------------------------------------------------------------------------------
 
+Status InteractingVehicle::set_queue(std::string_view sensor, std::uint32_t depth) {
+  const auto invalid = [&](const std::string& problem) {
+    return Failure{Failure::Kind::kInvalid, "'" + std::string(sensor) + "' " + problem};
+  };
+  const uav::SensorDescription* const found = catalogue_.find_sensor(sensor);
+  if (found == nullptr) return invalid("is no sensor of this UAV");
+  if (found->rate_hz <= 0.0) return invalid("measures on demand, so it has no queue");
+  if (depth < 1 || depth > link::kMaxQueue)
+    return invalid("cannot have a queue of " + std::to_string(depth) + " measurements; use 1 to " +
+                   std::to_string(link::kMaxQueue));
+  queues_[static_cast<std::size_t>(found - catalogue_.sensors.data())] = depth;
+  return ok_status();
+}
+
 Result<uav::Sample> InteractingVehicle::read_any(std::string_view sensor, uav::SensorKind kind,
                                                  Read read) {
   const uav::SensorDescription* const found = catalogue_.find_sensor(sensor);
@@ -119,7 +133,8 @@ Result<uav::Sample> InteractingVehicle::read_any(std::string_view sensor, uav::S
                        "Read it with kNext or kLatest"};
   }
   const auto index = static_cast<std::uint32_t>(found - catalogue_.sensors.data());
-  auto reply = interact(link::ReadSensor{index, read == Read::kLatest, read == Read::kIfAvailable});
+  auto reply = interact(
+      link::ReadSensor{index, read == Read::kLatest, read == Read::kIfAvailable, queues_[index]});
   if (!reply) return reply.failure();
   return take_sample(std::move(*reply), *found, read);
 }

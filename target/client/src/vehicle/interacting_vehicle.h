@@ -1,5 +1,7 @@
 #pragma once
 
+#include <atomic>
+#include <cstdint>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -36,6 +38,7 @@ std::string name_of_call(const decltype(link::Request::body)& body,
 class InteractingVehicle : public Vehicle {
  public:
   const uav::Catalogue& catalogue() const final { return catalogue_; }
+  Status set_queue(std::string_view sensor, std::uint32_t depth) final;
   Result<uav::Sample> read_any(std::string_view sensor, uav::SensorKind kind, Read read) final;
   Result<uav::BatterySample> read_battery() final;
   Status command_velocity(const uav::VelocityCommand& command) final;
@@ -48,7 +51,11 @@ class InteractingVehicle : public Vehicle {
   using Body = decltype(link::Request::body);
 
   InteractingVehicle(uav::Catalogue catalogue, std::vector<std::string> peers)
-      : catalogue_(std::move(catalogue)), peers_(std::move(peers)) {}
+      : catalogue_(std::move(catalogue)),
+        peers_(std::move(peers)),
+        queues_(catalogue_.sensors.size()) {
+    for (auto& queue : queues_) queue = 1;
+  }
 
   /// One interaction, from stamping the request to going on after its reply. After one that
   /// finishes the mission, `over` is set.
@@ -72,6 +79,7 @@ class InteractingVehicle : public Vehicle {
 
   uav::Catalogue catalogue_;
   std::vector<std::string> peers_;
+  std::vector<std::atomic<std::uint32_t>> queues_;  // of each sensor
   pid_t process_ = ::getpid();
   mutable std::mutex mutex_;
   std::optional<Failure> over_;  // guarded by mutex_

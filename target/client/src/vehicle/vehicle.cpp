@@ -1,6 +1,6 @@
 #include <tether/client/vehicle.h>
 
-// What vehicles without a radio, or without a battery that can be read, do.
+// What vehicles without a radio, without queues, or without a battery that can be read, do.
 namespace tether::client {
 namespace {
 
@@ -15,6 +15,10 @@ const std::vector<std::string>& Vehicle::peers() const {
 
 Status Vehicle::send(std::string_view, std::span<const std::uint8_t>) {
   return kNoRadio;
+}
+
+Status Vehicle::set_queue(std::string_view, std::uint32_t) {
+  return Failure{Failure::Kind::kInvalid, "this vehicle keeps the newest measurement only"};
 }
 
 Result<uav::BatterySample> Vehicle::read_battery() {

@@ -90,6 +90,38 @@ TEST_F(SimulatedVehicleTest, ReadsWhatIsAvailable) {
   EXPECT_FALSE(vehicle_->is_concurrent());
 }
 
+// "down" is periodic, and "imu" measures on demand.
+TEST_F(SimulatedVehicleTest, ReadsFromAQueueWhereOneIsSet) {
+  start([](const Request& r) {
+    Reply reply{r.sequence, r.issued_at, std::nullopt};
+    if (r.sequence < 4) reply.sample = uav::RangeSample{SimTime{}, r.sequence, 1.5};
+    return one(reply);
+  });
+  for (const std::uint32_t depth : {0u, 4097u})
+    expect_failure(vehicle_->set_queue("down", depth), Failure::Kind::kInvalid, "1 to 4096");
+  expect_failure(vehicle_->set_queue("imu", 5), Failure::Kind::kInvalid, "on demand");
+  expect_failure(vehicle_->set_queue("nose", 5), Failure::Kind::kInvalid, "no sensor");
+  ASSERT_TRUE(vehicle_->set_queue("down", 5).ok());
+  const auto all = read_all<uav::RangeSample>(*vehicle_, "down");
+  ASSERT_TRUE(all) << all.failure().message;
+  ASSERT_EQ(all->size(), 3u);
+  EXPECT_EQ(all->back().index, 3u);
+  for (const Request& request : coordinator_->requests())
+    EXPECT_EQ(std::get<link::ReadSensor>(request.body).queue, 5u);
+}
+
+// The second sensor is one measurement ahead, then both are at 2 ms.
+TEST_F(SimulatedVehicleTest, ReadsSensorsOfOneInstantTogether) {
+  start([](const Request& r) {
+    uav::RangeSample sample{from_ns<SimTime>(r.sequence == 1 ? 1 : 2), r.sequence, 1.5};
+    return one(Reply{r.sequence, from_ns<ExecTime>(9), sample});
+  });
+  const auto both = read_together<uav::RangeSample>(*vehicle_, {"down", "down"});
+  ASSERT_TRUE(both) << both.failure().message;
+  EXPECT_EQ((*both)[0].sampled_at, (*both)[1].sampled_at);
+  EXPECT_EQ(coordinator_->requests().size(), 3u);
+}
+
 TEST_F(SimulatedVehicleTest, SendsNothingForWrongArguments) {
   start();
   for (const std::string name : {"nose", "imu"}) {

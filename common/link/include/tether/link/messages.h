@@ -80,12 +80,18 @@ struct Refusal {
 };
 std::string_view name(Refusal::Reason reason);
 
+/// Most measurements that can wait in the queue of a sensor.
+inline constexpr std::uint32_t kMaxQueue = 4096;
+
 /// Read a sensor by its index in the catalogue.
 struct ReadSensor {
   std::uint32_t sensor = 0;
   bool latest = false;  ///< periodic sensors: the newest measurement again, without waiting
   /// Periodic sensors: reply at once, without a sample if no suitable one is available.
   bool only_if_available = false;
+  /// Periodic sensors: of so many of the newest measurements, the oldest that was not read. The
+  /// queue fills from the first such read on.
+  std::uint32_t queue = 1;
 };
 struct SetVelocity {
   uav::VelocityCommand command;

@@ -315,6 +315,18 @@ enum {
   TETHER_READ_IF_AVAILABLE = 2
 };
 
+/// Lets measurements of a periodic sensor wait, as a driver's queue does. A read then gets the
+/// oldest that was not read (TETHER_READ_LATEST: still the newest); if more wait, the oldest are
+/// lost, which the samples' `index` shows. To get all that have arrived, read with
+/// TETHER_READ_IF_AVAILABLE until TETHER_NOTHING_YET. The queue fills from the next read on. No
+/// interaction. In free running, only the newest waits.
+/// @param vehicle  the UAV  @param sensor  its name
+/// @param depth  how many wait; 1 to 4096; 1, as at first: only the newest
+/// @return TETHER_OK; TETHER_INVALID for another depth, if there is no such sensor, or if it
+///   measures on demand
+tether_status tether_set_queue(tether_vehicle* vehicle, const char* sensor,
+                               uint32_t depth) TETHER_NOEXCEPT;
+
 /// Describes an image. May grow.
 typedef struct tether_image_info {
   int64_t sampled_at_ns;  ///< ST of the exposure [ns]
@@ -358,6 +370,14 @@ const float* tether_image_depth_m(const tether_image* image) TETHER_NOEXCEPT;
 ///   pixel shows, see tether_sensor_label_model(); 0: none. NULL if `image` is, or if the camera is
 ///   not a segmentation camera.
 const uint16_t* tether_image_labels(const tether_image* image) TETHER_NOEXCEPT;
+
+/// Reads an image of each of several cameras, all of one instant: a stereo pair, or colour and
+/// depth. The cameras need one rate and phase, and a queue of a few images (tether_set_queue()).
+/// @param vehicle  the UAV  @param cameras  names  @param count  how many; at least 1
+/// @param[out] out  `count` images; free each with tether_image_free()
+/// @return TETHER_OK or an @ref interaction error; TETHER_INVALID if there is no common instant
+tether_status tether_read_together(tether_vehicle* vehicle, const char* const* cameras,
+                                   size_t count, tether_image** out) TETHER_NOEXCEPT;
 
 /// Reads the colours of a camera into the caller's memory, with one copy.
 /// @param vehicle  the UAV  @param sensor  name of the camera  @param mode  which image

@@ -213,6 +213,20 @@ class Vehicle {
     if (got != TETHER_OK) return Failure::last(got);
     return info;
   }
+  /// Lets measurements of a periodic sensor wait: reads get the oldest.
+  /// @param sensor  its name  @param depth  how many wait  @return as tether_set_queue()
+  Status set_queue(const char* sensor, std::uint32_t depth) noexcept {
+    return Status::of(tether_set_queue(get(), sensor, depth));
+  }
+  /// Reads an image of each of two cameras, of one instant.
+  /// @param first,second  their names  @return both images, as tether_read_together()
+  Result<std::pair<Image, Image>> read_together(const char* first, const char* second) noexcept {
+    const char* const cameras[] = {first, second};
+    tether_image* images[2] = {};
+    const tether_status got = tether_read_together(get(), cameras, 2, images);
+    if (got != TETHER_OK) return Failure::last(got);
+    return std::pair<Image, Image>(Image(images[0]), Image(images[1]));
+  }
   /// Reads an IMU.
   /// @param sensor  its name  @param read  which measurement  @return as tether_read_imu()
   Result<ImuSample> read_imu(const char* sensor, Read read = Read::kNext) noexcept {

@@ -48,6 +48,14 @@ class Vehicle {
   /// Whether each thread waits for its own reply only, as in programs that tether-exec started.
   virtual bool is_concurrent() const { return false; }
 
+  /// Lets up to `depth` measurements of a periodic sensor wait, as a driver's queue does: a read
+  /// gets the oldest that was not read (Read::kLatest: still the newest), and the oldest are lost
+  /// when there are more; `index` of the samples shows it. The queue fills from the next read on.
+  /// 1, as at first: only the newest waits. No interaction. In free running it stays 1. Fails with
+  /// kInvalid if there is no such sensor, it measures on demand, the depth is not within
+  /// 1..4096, or the vehicle keeps no queues.
+  virtual Status set_queue(std::string_view sensor, std::uint32_t depth);
+
   /// A measurement of a sensor: a sample of that kind. Fails with kInvalid if the UAV has no sensor
   /// of that kind and name.
   virtual Result<uav::Sample> read_any(std::string_view sensor, uav::SensorKind kind,
@@ -103,6 +111,52 @@ class Vehicle {
   virtual Status finish(bool reached_goal, std::string_view outcome,
                         std::string_view details_json) = 0;
 };
+
+/// All measurements that wait in the sensor's queue, in order: at least one, for which it waits.
+/// Ends with one of after the call, if reading takes longer than the sensor's period.
+template <class Sample>
+Result<std::vector<Sample>> read_all(Vehicle& vehicle, std::string_view sensor) {
+  const SimTime begun_at = same_instant(vehicle.now());
+  std::vector<Sample> samples;
+  auto sample = vehicle.read<Sample>(sensor);
+  while (sample) {
+    samples.push_back(std::move(*sample));
+    if (samples.back().sampled_at > begun_at) return samples;
+    sample = vehicle.read<Sample>(sensor, Read::kIfAvailable);
+  }
+  if (sample.failure().kind != Failure::Kind::kNothingYet) return sample.failure();
+  return samples;
+}
+
+/// One measurement of each sensor, all of one instant: for a stereo pair, or colour and depth.
+/// Reads those that are behind until all are of the same instant. Needs a queue of a few
+/// measurements
+/// (`set_queue`), so that what one sensor delivers earlier is not lost. Fails with kInvalid if
+/// after 1,000 reads there was no common instant.
+template <class Sample>
+Result<std::vector<Sample>> read_together(Vehicle& vehicle,
+                                          const std::vector<std::string_view>& sensors) {
+  constexpr int kMostReads = 1000;
+  std::vector<Sample> samples(sensors.size());
+  std::vector<bool> is_read(sensors.size());
+  for (int reads = 0; reads < kMostReads; ++reads) {
+    std::size_t behind = 0;
+    bool is_one_instant = true;
+    for (std::size_t i = 0; i < sensors.size(); ++i) {
+      is_one_instant &= is_read[i] && samples[i].sampled_at == samples[0].sampled_at;
+      const bool is_earlier =
+          is_read[behind] && (!is_read[i] || samples[i].sampled_at < samples[behind].sampled_at);
+      if (is_earlier) behind = i;
+    }
+    if (is_one_instant) return samples;
+    auto sample = vehicle.read<Sample>(sensors[behind]);
+    if (!sample) return sample.failure();
+    samples[behind] = std::move(*sample);
+    is_read[behind] = true;
+  }
+  return Failure{Failure::Kind::kInvalid,
+                 "the sensors have no measurements of one instant: give them one rate and phase"};
+}
 
 /// A stage for as long as the object lives (Vehicle::begin_stage).
 class Stage {
