@@ -117,8 +117,9 @@ class TimedSimulator final : public sim::Simulator {
   void advance_to(SimTime t) override {
     accounts_.physics.measure([&] { inner_->advance_to(t); });
   }
-  void apply(std::size_t uav, const uav::VelocityCommand& command) override {
-    inner_->apply(uav, command);
+  bool takes_setpoints() const override { return inner_->takes_setpoints(); }
+  void apply(std::size_t uav, const uav::Setpoint& setpoint) override {
+    inner_->apply(uav, setpoint);
   }
   void capture(sim::Snapshot& snapshot) const override {
     accounts_.sensors.measure([&] { inner_->capture(snapshot); });

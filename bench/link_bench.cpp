@@ -133,7 +133,7 @@ class StillSimulator final : public sim::Simulator {
   SimTime now() const override { return now_; }
   void reset(std::uint64_t) override { now_ = {}; }
   void advance_to(SimTime t) override { now_ = t; }
-  void apply(std::size_t, const uav::VelocityCommand&) override {}
+  void apply(std::size_t, const uav::Setpoint&) override {}
   void capture(sim::Snapshot& snapshot) const override { snapshot.at = now_; }
   uav::Sample measure(const sim::Snapshot& snapshot, std::size_t, std::size_t,
                       std::uint64_t index) override {

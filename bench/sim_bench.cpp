@@ -54,7 +54,7 @@ void BM_steps_corridor(benchmark::State& state) {
   const auto simulator = make_mujoco_simulator(corridor(), print_warning);
   double speed = 0.5;
   for (auto _ : state) {
-    simulator->apply(0, {{speed, 0.0, 0.0}, 0.2});
+    simulator->apply(0, uav::to_setpoint({{speed, 0.0, 0.0}, 0.2}));
     simulator->advance_to(simulator->now() + 1s);
     speed = -speed;
   }
@@ -110,7 +110,7 @@ void BM_scans_1080(benchmark::State& state) {
   const World world = corridor_with_lidar();
   const std::size_t lidar = world.uavs[0].sensors.size() - 1;
   const auto simulator = make_mujoco_simulator(world, print_warning);
-  simulator->apply(0, {{0.5, 0.0, 0.0}, 0.1});
+  simulator->apply(0, uav::to_setpoint({{0.5, 0.0, 0.0}, 0.1}));
   Snapshot snapshot;
   std::uint64_t index = 0;
   for (auto _ : state) {
@@ -155,7 +155,7 @@ void images(benchmark::State& state, int width_px, int height_px, std::int64_t t
   model.intrinsics = uav::CameraModel::from_horizontal_fov(width_px, height_px,
                                                            model.intrinsics.horizontal_fov_rad());
   const auto simulator = make_mujoco_simulator(world, print_warning, helpers);
-  simulator->apply(0, {{0.5, 0.0, 0.0}, 0.1});
+  simulator->apply(0, uav::to_setpoint({{0.5, 0.0, 0.0}, 0.1}));
   Snapshot snapshot;
   simulator->capture(snapshot);
   simulator->measure(snapshot, 0, camera, 0);  // sets the renderer up
@@ -219,7 +219,7 @@ void effects(benchmark::State& state, double exposure_s, double readout_s, bool 
   };
   const auto take_off = [&] {
     simulator->reset(1);
-    simulator->apply(0, {{0.5, 0.0, 0.0}, 0.1});
+    simulator->apply(0, uav::to_setpoint({{0.5, 0.0, 0.0}, 0.1}));
     simulator->advance_to(SimTime(2s));
   };
   take_off();

@@ -106,7 +106,7 @@ void require_sound(sim::Simulator& simulator) {
 void fly(sim::Simulator& simulator) {
   require_sound(simulator);
   for (std::size_t i = 0; i < simulator.world().uavs.size(); ++i)
-    simulator.apply(i, {{1.0, 0.5, 0.2}, 1.0});
+    simulator.apply(i, uav::to_setpoint({{1.0, 0.5, 0.2}, 1.0}));
   simulator.advance_to(SimTime{} + kSteps * simulator.grid().dt());
   require_sound(simulator);
   simulator.reset(1);

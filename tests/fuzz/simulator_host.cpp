@@ -29,7 +29,7 @@ void fly_script(sim::Simulator& simulator) {
   const std::size_t sensors = simulator.world().uavs[0].sensors.size();
   simulator.reset(1);
   for (const int ms : {3, 60}) {
-    simulator.apply(0, {{1.0, 0.0, 0.0}, 0.1});
+    simulator.apply(0, uav::to_setpoint({{1.0, 0.0, 0.0}, 0.1}));
     simulator.advance_to(SimTime(std::chrono::milliseconds(ms)));
     sim::Snapshot snapshot;
     simulator.capture(snapshot);

@@ -29,7 +29,13 @@ class Promises {
     require(open_->step.count() > 0 && to_ns(advance.to) % open_->step.count() == 0,
             "off the grid");
     for (const auto& command : advance.commands)
-      require(command.uav < open_->uavs.size() && uav::is_valid(command.command), "a bad command");
+      require(
+          command.uav < open_->uavs.size() && complaint_about(to_setpoint(command.command)).empty(),
+          "a bad command");
+    for (const auto& [uav, setpoint] : advance.setpoints)
+      require(uav < open_->uavs.size() &&
+                  complaint_about(setpoint, flight_limits(open_->uavs[uav].airframe)).empty(),
+              "a bad set-point");
     now_ = advance.to;
   }
   void kept(const protocol::CastRays& cast) { require_bodies(cast.X_WB.size(), cast.carrier); }

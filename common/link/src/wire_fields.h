@@ -108,7 +108,7 @@ void fields(auto& io, Is<ReadSensor> auto& m) {
           "is not within 1..4096"});
 }
 void fields(auto& io, Is<SetVelocity> auto& m) {
-  io.require([&m] { return uav::is_valid(m.command); }, "velocity command",
+  io.require([&m] { return complaint_about(to_setpoint(m.command)).empty(); }, "velocity command",
              "is not finite, or above 100 m/s or 100 rad/s");
   io("velocity_h_m_s", m.command.velocity_H_m_s);
   io("yaw_rate_rad_s", m.command.yaw_rate_rad_s);

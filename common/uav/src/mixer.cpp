@@ -30,6 +30,11 @@ double max_rotor_thrust_N(const MultirotorParameters& parameters) {
   return parameters.thrust_coefficient * speed * speed;
 }
 
+FlightLimits flight_limits(const MultirotorParameters& parameters) {
+  return {static_cast<std::uint32_t>(parameters.rotors.size()), parameters.max_rotor_speed_rad_s,
+          static_cast<double>(parameters.rotors.size()) * max_rotor_thrust_N(parameters)};
+}
+
 // The torque of a rotor's thrust is p × z; its reaction torque opposes the spin.
 Mixer::Mixer(const MultirotorParameters& parameters)
     : count_(std::min(parameters.rotors.size(), MultirotorState::kMaxRotors)) {

@@ -1,4 +1,4 @@
-#include "velocity_controller.h"
+#include "cascade.h"
 
 #include <algorithm>
 #include <cmath>
@@ -77,10 +77,25 @@ Multirotor::Multirotor(MultirotorParameters parameters, double gravity_m_s2, Dur
       down_(-std::expm1(-dt_s_ / parameters_.time_constant_down_s)),
       mixer_(parameters_) {}
 
-Wrench Multirotor::step(const BodyState& body, const VelocityCommand& command,
+RotorSpeeds Multirotor::wanted_speeds(const BodyState& body, const Setpoint& setpoint,
+                                      MultirotorState& state) const {
+  RotorSpeeds speeds{};
+  if (level_of(setpoint.mask) == SetpointLevel::kRotors) {
+    follow_motion(body, state);
+    for (std::size_t i = 0; i < parameters_.rotors.size(); ++i)
+      speeds[i] = std::min(setpoint.rotor_speeds_rad_s[i], parameters_.max_rotor_speed_rad_s);
+    return speeds;
+  }
+  const Demand demand = control(parameters_, gravity_m_s2_, body, setpoint, dt_s_, state);
+  const RotorThrusts thrusts = mixer_.mix(demand, max_rotor_thrust_N(parameters_));
+  for (std::size_t i = 0; i < parameters_.rotors.size(); ++i)
+    speeds[i] = speed_for(parameters_, thrusts[i]);
+  return speeds;
+}
+
+Wrench Multirotor::step(const BodyState& body, const Setpoint& setpoint,
                         MultirotorState& state) const {
-  const Demand demand = control(parameters_, gravity_m_s2_, body, command, dt_s_, state);
-  advance_rotors(mixer_.mix(demand, max_rotor_thrust_N(parameters_)), state);
+  advance_rotors(wanted_speeds(body, setpoint, state), state);
 
   const Vec3 v_B = rotate(inverse(body.q_WB), body.v_WB);
   Wrench wrench = rotor_wrench(parameters_, body, v_B, state);
@@ -89,11 +104,10 @@ Wrench Multirotor::step(const BodyState& body, const VelocityCommand& command,
 }
 
 // First-order lag towards the wanted speeds, exact for a set-point that holds over the step.
-void Multirotor::advance_rotors(const RotorThrusts& wanted, MultirotorState& state) const {
+void Multirotor::advance_rotors(const RotorSpeeds& wanted, MultirotorState& state) const {
   for (std::size_t i = 0; i < parameters_.rotors.size(); ++i) {
     double& speed = state.rotor_speed_rad_s[i];
-    const double target = speed_for(parameters_, wanted[i]);
-    speed += (target > speed ? up_ : down_) * (target - speed);
+    speed += (wanted[i] > speed ? up_ : down_) * (wanted[i] - speed);
   }
 }
 

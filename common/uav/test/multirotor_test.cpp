@@ -47,9 +47,9 @@ TEST(Step, IsDeterministicAndResumesFromASnapshot) {
       resumed.body = a.body;
       resumed.state = a.state;
     }
-    a.fly(command, 0.1);
-    b.fly(command, 0.1);
-    if (i >= 20) resumed.fly(command, 0.1);
+    a.fly(to_setpoint(command), 0.1);
+    b.fly(to_setpoint(command), 0.1);
+    if (i >= 20) resumed.fly(to_setpoint(command), 0.1);
   }
   for (const FlyingBody* other : {&b, &resumed}) {
     EXPECT_EQ(a.state, other->state);
@@ -62,7 +62,8 @@ TEST(Step, RotorsSpinUpFasterThanDown) {
   const auto change_after_10ms = [&p](double climb_m_s) {
     FlyingBody uav(p);
     const double before = uav.state.rotor_speed_rad_s[0];
-    for (int i = 0; i < 10; ++i) uav.multirotor().step(uav.body, {{0, 0, climb_m_s}, 0}, uav.state);
+    for (int i = 0; i < 10; ++i)
+      uav.multirotor().step(uav.body, to_setpoint({{0, 0, climb_m_s}, 0}), uav.state);
     return uav.state.rotor_speed_rad_s[0] - before;
   };
   EXPECT_GT(change_after_10ms(0.5), 0.0);
@@ -74,14 +75,16 @@ TEST(Step, DragOpposesTheMotionAcrossTheRotors) {
   BodyState body;
   body.v_WB = {2, 0, 0};
   MultirotorState state = hover_state(p, kGravity, 0);
-  const double rotors = -Multirotor(p, kGravity, kDt).step(body, {{2, 0, 0}, 0}, state).force_B.x;
+  const double rotors =
+      -Multirotor(p, kGravity, kDt).step(body, to_setpoint({{2, 0, 0}, 0}), state).force_B.x;
   double speeds = 0;
   for (const double speed : state.rotor_speed_rad_s) speeds += speed;
   EXPECT_NEAR(rotors, 2 * p.drag_coefficient * speeds, 1e-9);
 
   p.linear_drag_N_s_m = 0.1;
   state = hover_state(p, kGravity, 0);
-  const double both = -Multirotor(p, kGravity, kDt).step(body, {{2, 0, 0}, 0}, state).force_B.x;
+  const double both =
+      -Multirotor(p, kGravity, kDt).step(body, to_setpoint({{2, 0, 0}, 0}), state).force_B.x;
   EXPECT_NEAR(both - rotors, 0.2, 0.001);
 }
 
@@ -96,7 +99,7 @@ TEST(Step, NonFiniteInputGivesANonFiniteWrench) {
       {{}, {{}, nan}}};
   for (const auto& [body, command] : inputs) {
     MultirotorState state = hover_state(p, kGravity, 0);
-    const Wrench wrench = Multirotor(p, kGravity, kDt).step(body, command, state);
+    const Wrench wrench = Multirotor(p, kGravity, kDt).step(body, to_setpoint(command), state);
     EXPECT_FALSE(std::isfinite(wrench.force_B.z) && std::isfinite(wrench.torque_B.z));
   }
 }

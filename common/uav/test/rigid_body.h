@@ -16,23 +16,23 @@ class FlyingBody {
     body.q_WB = from_rpy(0, 0, yaw);
   }
 
-  Wrench advance(const VelocityCommand& command) {
-    const Wrench wrench = multirotor_.step(body, command, state);
+  Wrench advance(const Setpoint& setpoint) {
+    const Wrench wrench = multirotor_.step(body, setpoint, state);
     integrate(wrench);
     return wrench;
   }
 
   /// Calls `watch(seconds since the start of this call)` after each step.
   template <class Watch>
-  void fly(const VelocityCommand& command, double seconds, Watch watch) {
+  void fly(const Setpoint& setpoint, double seconds, Watch watch) {
     const int steps = static_cast<int>(std::lround(seconds / kDt_s));
     for (int i = 1; i <= steps; ++i) {
-      advance(command);
+      advance(setpoint);
       watch(i * kDt_s);
     }
   }
-  void fly(const VelocityCommand& command, double seconds) {
-    fly(command, seconds, [](double) {});
+  void fly(const Setpoint& setpoint, double seconds) {
+    fly(setpoint, seconds, [](double) {});
   }
 
   double yaw() const { return yaw_rad(body.q_WB); }

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include <tether/base/time.h>
-#include <tether/uav/samples.h>
+#include <tether/uav/setpoint.h>
 
 namespace tether::coordinator {
 

@@ -137,7 +137,7 @@ void Stepper::close(std::size_t uav) {
 
 void Stepper::apply_commands() {
   while (const auto command = commands_.pop_due(st_)) {
-    guarded([&](sim::Simulator& s) { s.apply(command->uav, command->command); });
+    guarded([&](sim::Simulator& s) { s.apply(command->uav, to_setpoint(command->command)); });
     log_->command_effect(st_, simulator_->world().uavs[command->uav].name, *command);
   }
 }

@@ -82,7 +82,7 @@ MaybeFault body_fault(const link::ReadSensor& read, const Standing& sut) {
 }
 
 MaybeFault body_fault(const link::SetVelocity& set, const Standing& sut) {
-  if (!uav::is_valid(set.command))
+  if (!complaint_about(to_setpoint(set.command)).empty())
     return Fault{Kind::kBadValue, "a velocity command that is not finite or too large"};
   if (sut.waiting_commands >= kMaxWaitingCommands)
     return Fault{Kind::kTooMany, fmt::format("a velocity command while {} others are pending",

@@ -20,7 +20,7 @@ SimTime at_ms(std::int64_t ms) {
 /// Flies with a command, stopping at `stops` as well, and measures everything at the end.
 std::vector<uav::Sample> fly(FakeSimulator& simulator, const std::vector<SimTime>& stops) {
   simulator.reset(7);
-  simulator.apply(0, kTurningLeft);
+  simulator.apply(0, to_setpoint(kTurningLeft));
   for (const SimTime stop : stops) simulator.advance_to(stop);
   simulator.advance_to(at_ms(1000));
   Snapshot snapshot;
@@ -49,11 +49,11 @@ TEST(FakeSimulator, FollowsCommandsFromTheirInstantInTheHeadingFrame) {
   world.uavs[0].X_WB.q = uav::from_axis_angle({0.0, 0.0, 1.0}, 1.5707963267948966);
   FakeSimulator simulator(std::move(world));
   simulator.advance_to(at_ms(100));
-  simulator.apply(0, {{2.0, 0.0, 0.5}, 0.0});
+  simulator.apply(0, uav::to_setpoint({{2.0, 0.0, 0.5}, 0.0}));
   simulator.advance_to(at_ms(600));
   const auto body = simulator.ground_truth(0).body;
   EXPECT_LT(norm(body.p_WB - uav::Vec3{0.0, 1.0, 1.25}), 1e-9);
-  simulator.apply(0, {{}, 0.5});
+  simulator.apply(0, uav::to_setpoint({{}, 0.5}));
   simulator.advance_to(at_ms(1600));
   EXPECT_NEAR(uav::yaw_rad(simulator.ground_truth(0).body.q_WB) - uav::yaw_rad(body.q_WB), 0.5,
               1e-9);

@@ -77,9 +77,16 @@ class GazeboPluginTest : public ::testing::Test {
   std::vector<std::unique_ptr<Gzserver>> servers_;
 };
 
-uav::VelocityCommand command_at(int k) {
-  return {{0.8 * std::sin(0.1 * k), 0.5 * std::cos(0.07 * k), k < 50 ? 0.15 : -0.15},
-          0.6 * std::sin(0.05 * k)};
+// Of every kind.
+uav::Setpoint command_at(int k) {
+  if (k % 10 == 3) return {.mask = uav::kPosition, .in_heading = false, .p_WB_m = {0.5, 0.2, 1.5}};
+  if (k % 10 == 4)
+    return {.mask = uav::kAttitude | uav::kThrust,
+            .q_WB = uav::from_rpy(0.05, -0.05, 0.1),
+            .thrust_N = 7.0};
+  return uav::to_setpoint(
+      {{0.8 * std::sin(0.1 * k), 0.5 * std::cos(0.07 * k), k < 50 ? 0.15 : -0.15},
+       0.6 * std::sin(0.05 * k)});
 }
 
 // ---- physics ----------------------------------------------------------------------------------
@@ -105,7 +112,7 @@ std::vector<std::vector<double>> flight(sim::Simulator& simulator, bool looks) {
   std::vector<std::vector<double>> states;
   sim::Snapshot snapshot;
   for (int k = 1; k <= 60; ++k) {
-    simulator.apply(0, {{1.0, 0.1 * std::sin(0.1 * k), 0.0}, 0.0});
+    simulator.apply(0, uav::to_setpoint({{1.0, 0.1 * std::sin(0.1 * k), 0.0}, 0.0}));
     simulator.advance_to(SimTime(50ms * k));
     simulator.capture(snapshot);
     states.push_back(snapshot.state);
@@ -165,7 +172,7 @@ TEST_F(GazeboPluginTest, MeasuresTheDistancesOfTheEmbeddedSimulator) {
     std::array<double, 2> range_m{};
     for (std::size_t i = 0; i < 2; ++i) {
       sim::Simulator& simulator = i == 0 ? *gazebo : *embedded;
-      simulator.apply(0, {{}, 1.0});
+      simulator.apply(0, uav::to_setpoint({{}, 1.0}));
       simulator.advance_to(SimTime(200ms * k));
       sim::Snapshot snapshot;
       simulator.capture(snapshot);

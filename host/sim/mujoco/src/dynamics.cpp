@@ -31,7 +31,7 @@ void Dynamics::reset() {
   for (std::size_t i = 0; i < flights_.size(); ++i) {
     Flight& flight = flights_[i];
     const Uav& uav = world_.uavs[i];
-    flight.command = {};
+    flight.setpoint = {};
     flight.state = uav::hover_state(uav.airframe, world_.gravity_m_s2, yaw_rad(uav.X_WB.q));
     if (uav.energy) flight.meter.emplace(*uav.energy, uav.airframe, world_.gravity_m_s2);
   }
@@ -41,8 +41,8 @@ void Dynamics::reset() {
   now_ = SimTime{};
 }
 
-void Dynamics::set_command(std::size_t uav, const uav::VelocityCommand& command) {
-  flights_[uav].command = command;
+void Dynamics::set_setpoint(std::size_t uav, const uav::Setpoint& setpoint) {
+  flights_[uav].setpoint = setpoint;
 }
 
 void Dynamics::step() {
@@ -95,7 +95,7 @@ void Dynamics::fly(std::size_t uav) {
   if (flight.meter)
     flight.multirotor.limit_rotor_speed(world_.uavs[uav].airframe.max_rotor_speed_rad_s *
                                         flight.meter->speed_limit());
-  const uav::Wrench wrench = flight.multirotor.step(body, flight.command, flight.state);
+  const uav::Wrench wrench = flight.multirotor.step(body, flight.setpoint, flight.state);
   if (flight.meter) flight.meter->step(now_, world_.step, body, flight.state);
   flight.force_W = rotate(body.q_WB, wrench.force_B);
   flight.torque_W = rotate(body.q_WB, wrench.torque_B);

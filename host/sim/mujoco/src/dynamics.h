@@ -24,7 +24,7 @@ class Dynamics {
 
   /// Start poses, UAVs hovering, zero commands. Allocates nothing.
   void reset();
-  void set_command(std::size_t uav, const uav::VelocityCommand& command);
+  void set_setpoint(std::size_t uav, const uav::Setpoint& setpoint);
   /// One step: controllers and rotors see the state at its beginning, the engine does the rest.
   /// Allocates nothing.
   /// @throws Error(kSetup) when the engine finds the state unusable (not finite or out of bounds).
@@ -45,7 +45,7 @@ class Dynamics {
  private:
   struct Flight {
     uav::Multirotor multirotor;
-    uav::VelocityCommand command;
+    uav::Setpoint setpoint;
     uav::MultirotorState state;
     std::optional<energy::Meter> meter{};
     uav::Vec3 force_W{}, torque_W{};  ///< of the rotors, in this step

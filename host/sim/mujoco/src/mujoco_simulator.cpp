@@ -64,9 +64,10 @@ class MujocoSimulator final : public Simulator {
     warn_once_about_contacts();
   }
 
-  void apply(std::size_t uav, const uav::VelocityCommand& command) override {
+  bool takes_setpoints() const override { return true; }
+  void apply(std::size_t uav, const uav::Setpoint& setpoint) override {
     check_uav(uav);
-    dynamics_.set_command(uav, command);
+    dynamics_.set_setpoint(uav, setpoint);
   }
 
   void capture(Snapshot& snapshot) const override {

@@ -90,7 +90,7 @@ struct Flight {
 Flight turning(World world) {
   world.uavs[0].X_WB.q = uav::from_rpy(0.0, 0.0, -0.8);
   Flight flight(std::move(world));
-  flight.simulator->apply(0, {{}, 1.0});
+  flight.simulator->apply(0, uav::to_setpoint({{}, 1.0}));
   flight.advance(1s);
   return flight;
 }

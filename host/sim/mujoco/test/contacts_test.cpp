@@ -61,7 +61,7 @@ TEST_P(MujocoContactsTest, ReportsWhatWasHitAndHowHard) {
   const auto simulator = make_simulator(flight.world);
   ASSERT_TRUE(simulator->reports_contacts());
   for (std::size_t i = 0; i < flight.world.uavs.size(); ++i) {
-    simulator->apply(i, {flight.velocity_H_m_s, 0.0});
+    simulator->apply(i, uav::to_setpoint({flight.velocity_H_m_s, 0.0}));
   }
   simulator->advance_to(SimTime(4s));
   std::string first_with;
@@ -97,7 +97,7 @@ TEST(MujocoContactsTest, StopAUavThatFalls) {
     SCOPED_TRACE(fall_m_s);
     const World world = world_with_fall(fall_m_s);
     const auto simulator = make_simulator(world);
-    simulator->apply(0, {{0.0, 0.0, -fall_m_s}, 0.0});
+    simulator->apply(0, uav::to_setpoint({{0.0, 0.0, -fall_m_s}, 0.0}));
     double hit_m_s = 0.0, sunk_m = 0.0, fastest_m_s = 0.0;
     for (auto t = SimTime(1ms); t <= SimTime(5s); t += 1ms) {
       simulator->advance_to(t);
@@ -116,7 +116,7 @@ TEST(MujocoContactsTest, StopAUavThatFalls) {
 
 TEST(MujocoContactsTest, UavsThatCollideNameEachOther) {
   const auto simulator = make_simulator(world_with_two());
-  for (std::size_t i = 0; i < 2; ++i) simulator->apply(i, {{1.0, 0.0, 0.0}, 0.0});
+  for (std::size_t i = 0; i < 2; ++i) simulator->apply(i, uav::to_setpoint({{1.0, 0.0, 0.0}, 0.0}));
   simulator->advance_to(SimTime(4s));
   std::map<std::size_t, std::string> first_with;
   for (const Contact& contact : simulator->take_contacts())
@@ -128,8 +128,8 @@ TEST(MujocoContactsTest, UavsThatCollideNameEachOther) {
 TEST(MujocoContactsTest, DoNotDependOnHowTheAdvanceIsSplit) {
   const auto whole = make_simulator(world_with_wall());
   const auto pieces = make_simulator(world_with_wall());
-  whole->apply(0, {{4.0, 0.0, 0.0}, 0.0});
-  pieces->apply(0, {{4.0, 0.0, 0.0}, 0.0});
+  whole->apply(0, uav::to_setpoint({{4.0, 0.0, 0.0}, 0.0}));
+  pieces->apply(0, uav::to_setpoint({{4.0, 0.0, 0.0}, 0.0}));
   whole->advance_to(SimTime(4s));
   std::vector<Contact> contacts;
   for (auto t = SimTime(1ms); t <= SimTime(4s); t += 1ms) {

@@ -28,10 +28,10 @@ TEST(DynamicsTest, HoversAndFollowsVelocityAndYawRateInTheHeadingFrame) {
   run(dynamics, 10'000);
   EXPECT_LT(norm(dynamics.body_state(0).p_WB - uav::Vec3{0.0, 0.0, 1.0}), 1e-3);
   EXPECT_LT(norm(dynamics.body_state(0).v_WB), 1e-3);
-  dynamics.set_command(0, {{0.8, -0.3, 0.2}, 0.0});
+  dynamics.set_setpoint(0, uav::to_setpoint({{0.8, -0.3, 0.2}, 0.0}));
   run(dynamics, 4'000);
   EXPECT_LT(norm(dynamics.body_state(0).v_WB - uav::Vec3{0.3, 0.8, 0.2}), 0.03);
-  dynamics.set_command(0, {{}, 0.5});
+  dynamics.set_setpoint(0, uav::to_setpoint({{}, 0.5}));
   run(dynamics, 4'000);
   EXPECT_LT(norm(dynamics.body_state(0).v_WB), 0.02);
   EXPECT_NEAR(dynamics.body_state(0).w_WB_B.z, 0.5, 0.01);
@@ -41,7 +41,7 @@ TEST(DynamicsTest, AWallStopsTheUav) {
   World world = test_world();
   world.models.push_back(box_model("wall", {2.0, 0.0, 1.5}, {0.2, 6.0, 3.0}, {1.0, 1.0, 1.0}));
   Dynamics dynamics(world, no_warnings());
-  dynamics.set_command(0, {{1.0, 0.0, 0.0}, 0.0});
+  dynamics.set_setpoint(0, uav::to_setpoint({{1.0, 0.0, 0.0}, 0.0}));
   run(dynamics, 5'000);
   const double front_m = dynamics.body_state(0).p_WB.x + 0.2;
   EXPECT_GT(front_m, 1.7);
@@ -53,14 +53,14 @@ TEST(DynamicsTest, RotorsActToTheBitAsForcesThatTheEngineApplies) {
   World world = test_world();
   world.uavs.push_back(testing::test_uav("beta", {1.0, 0.3, 2.0}));
   world.uavs[1].X_WB.q = uav::from_rpy(0.3, -0.2, 2.0);
-  const uav::VelocityCommand command{{1.0, -0.4, -0.5}, 0.6};
+  const uav::Setpoint command = uav::to_setpoint({{1.0, -0.4, -0.5}, 0.6});
   Dynamics dynamics(world, no_warnings());
   const ModelPtr model = make_physics_model(world, no_warnings());
   const DataPtr data = make_data(*model);
   const uav::Multirotor multirotor(world.uavs[0].airframe, world.gravity_m_s2, world.step);
   std::vector<uav::MultirotorState> states;
   for (std::size_t i = 0; i < 2; ++i) {
-    dynamics.set_command(i, command);
+    dynamics.set_setpoint(i, command);
     states.push_back(uav::hover_state(world.uavs[i].airframe, world.gravity_m_s2,
                                       uav::yaw_rad(world.uavs[i].X_WB.q)));
   }
@@ -97,7 +97,7 @@ TEST(DynamicsTest, ABatteryThatHoldsItsVoltageDoesNotChangeTheFlight) {
   const World plain = test_world(), powered = world_with_battery(1.0, 0.01);
   Dynamics without(plain, no_warnings()), with(powered, no_warnings());
   for (Dynamics* dynamics : {&without, &with}) {
-    dynamics->set_command(0, {{1.0, 0.5, 0.5}, 0.5});
+    dynamics->set_setpoint(0, uav::to_setpoint({{1.0, 0.5, 0.5}, 0.5}));
     run(*dynamics, 1'000);
   }
   EXPECT_EQ(without.body_state(0).p_WB, with.body_state(0).p_WB);
@@ -110,7 +110,7 @@ TEST(DynamicsTest, ASaggingBatteryLimitsTheClimb) {
   const World plain = test_world();
   Dynamics without(plain, no_warnings()), with(sagging, no_warnings());
   for (Dynamics* dynamics : {&without, &with}) {
-    dynamics->set_command(0, {{0.0, 0.0, 2.0}, 0.0});
+    dynamics->set_setpoint(0, uav::to_setpoint({{0.0, 0.0, 2.0}, 0.0}));
     run(*dynamics, 400);
   }
   EXPECT_LT(with.body_state(0).v_WB.z, without.body_state(0).v_WB.z - 0.05);
@@ -148,7 +148,7 @@ TEST(DynamicsTest, ResetRestoresEverything) {
   Dynamics dynamics(world, no_warnings());
   std::vector<double> fresh;
   dynamics.capture(fresh);
-  dynamics.set_command(0, {{1.0, 0.0, 0.0}, 1.0});
+  dynamics.set_setpoint(0, uav::to_setpoint({{1.0, 0.0, 0.0}, 1.0}));
   run(dynamics, 500);
   dynamics.reset();
   std::vector<double> again;
@@ -161,7 +161,7 @@ TEST(DynamicsTest, ResetRestoresEverything) {
 TEST(DynamicsTest, MotionIsTheChangeOfVelocity) {
   const World world = test_world();
   Dynamics dynamics(world, no_warnings());
-  dynamics.set_command(0, {{1.0, 0.5, 0.2}, 1.0});
+  dynamics.set_setpoint(0, uav::to_setpoint({{1.0, 0.5, 0.2}, 1.0}));
   run(dynamics, 150);
   const uav::BodyState before = dynamics.body_state(0);
   dynamics.step();

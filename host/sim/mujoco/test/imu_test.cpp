@@ -23,7 +23,7 @@ TEST(ImuTest, TurningAtAConstantRateInTheSimulator) {
   const Pose X_BS{{0.3, 0.1, 0.0}, uav::from_rpy(0.5, -0.4, 0.8)};
   world.uavs[0].sensors[kImu].X_BS = X_BS;
   const auto simulator = make_simulator(world);
-  simulator->apply(0, {{}, 1.5});
+  simulator->apply(0, uav::to_setpoint({{}, 1.5}));
   simulator->advance_to(SimTime(5s));
   const auto sample = measure_now<uav::ImuSample>(*simulator, kImu);
   const double rate_rad_s = simulator->ground_truth(0).body.w_WB_B.z;
@@ -43,7 +43,7 @@ TEST(ImuTest, IntegratesToTheTrueMotion) {
   const auto simulator = make_simulator(world);
   const auto at_rest = measure_now<uav::ImuSample>(*simulator, kImu);
   EXPECT_LT(norm(rotate(X_BS.q, at_rest.specific_force_m_s2) - Vec3{0.0, 0.0, kGravity}), 1e-9);
-  simulator->apply(0, {{1.0, 0.4, 0.3}, 1.0});
+  simulator->apply(0, uav::to_setpoint({{1.0, 0.4, 0.3}, 1.0}));
   Vec3 v_W{};
   uav::Quat q_WS = at_rest.q_WS, truth = q_WS;
   for (int i = 1; i <= 1000; ++i) {

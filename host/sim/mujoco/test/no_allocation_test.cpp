@@ -22,7 +22,7 @@ TEST_P(SteppingTest, SteppingAndCapturingAllocateNothing) {
   Snapshot snapshot;
   simulator->capture(snapshot);
   AllocationCount count;
-  simulator->apply(0, {{1.0, 0.0, 0.0}, 0.3});
+  simulator->apply(0, uav::to_setpoint({{1.0, 0.0, 0.0}, 0.3}));
   simulator->advance_to(SimTime(3s));  // into the wall
   simulator->capture(snapshot);
   simulator->ground_truth(0);

@@ -59,9 +59,14 @@ std::string Conversation::complaint(const Advance& advance) const {
     return "Advance.to is " + in_ns(advance.to) + ", which is not a step boundary";
   }
   for (const Command& command : advance.commands) {
-    if (command.uav >= uavs_) {
+    if (command.uav >= uavs_.size()) {
       return "Advance.commands have the unknown UAV index " + number(command.uav);
     }
+  }
+  for (const auto& [uav, setpoint] : advance.setpoints) {
+    if (uav >= uavs_.size()) return "Advance.setpoints have the unknown UAV index " + number(uav);
+    if (const std::string wrong = complaint_about(setpoint, uavs_[uav]); !wrong.empty())
+      return "Advance.setpoints: " + wrong;
   }
   return {};
 }
@@ -87,8 +92,9 @@ void Conversation::ask(const Request& request) {
 void Conversation::note(const Open& open) {
   is_open_ = opening_ = true;
   step_ = std::max(open.step, Duration(1));
-  uavs_ = open.uavs.size();
-  bodies_ = uavs_ + open.bodies.size();
+  uavs_.clear();
+  for (const UavDescription& uav : open.uavs) uavs_.push_back(flight_limits(uav.airframe));
+  bodies_ = uavs_.size() + open.bodies.size();
   past_steps_ = open.past_steps;
   max_width_px_ = open.max_width_px;
   max_height_px_ = open.max_height_px;
@@ -133,13 +139,14 @@ std::string Conversation::complaint_of_state(const State& state, const ForState&
     return "State.now is " + in_ns(state.now) + " instead of " + in_ns(asked.to);
   }
   for (const std::string& wrong : {unlike("State.bodies", state.bodies.size(), bodies_),
-                                   unlike("State.motions", state.motions.size(), uavs_),
+                                   unlike("State.motions", state.motions.size(), uavs_.size()),
                                    unlike("State.past", state.past.size(), asked.past)}) {
     if (!wrong.empty()) return wrong;
   }
   SimTime before = asked.from;
   for (const Touch& touch : state.touches) {
-    if (touch.uav >= uavs_) return "State.touches have the unknown UAV index " + number(touch.uav);
+    if (touch.uav >= uavs_.size())
+      return "State.touches have the unknown UAV index " + number(touch.uav);
     if (touch.at < before || touch.at > asked.to || to_ns(touch.at) % step_.count() != 0) {
       return "State.touches have one at " + in_ns(touch.at) +
              ", which is not a step boundary of the advance, in order";

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <tether/base/result.h>
 #include <tether/base/time.h>
@@ -64,7 +65,7 @@ class Conversation {
   bool is_open_ = false;
   bool opening_ = false;  ///< the last request was Open
   Duration step_{1};
-  std::size_t uavs_ = 0;
+  std::vector<uav::FlightLimits> uavs_;
   std::size_t bodies_ = 0;
   std::size_t past_steps_ = 0;
   std::int32_t max_width_px_ = 0;

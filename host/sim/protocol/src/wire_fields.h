@@ -112,12 +112,19 @@ constexpr void fields(auto& io, Is<Command> auto& m) {
   io("yaw_rate_rad_s", m.command.yaw_rate_rad_s);
   io("uav", m.uav);
   io.require([&m] { return m.uav < kMaxBodies; }, "uav", "have an unknown UAV index");
-  io.require([&m] { return is_valid(m.command); }, "command", "are not valid velocity commands");
+  io.require([&m] { return complaint_about(to_setpoint(m.command)).empty(); }, "command",
+             "are not valid velocity commands");
+}
+void fields(auto& io, Is<SetpointCommand> auto& m) {
+  io.here("Advance.setpoints: ");
+  io("uav", m.uav, Rule{[](std::uint32_t uav) { return uav < kMaxBodies; }, "is unknown"});
+  io("setpoint", m.setpoint);
 }
 void fields(auto& io, Is<Advance> auto& m) {
   io.here("Advance.");
   io("to_st_ns", m.to);
   io("commands", m.commands, AtMost{kMaxBodies, "are too many"});
+  io("setpoints", m.setpoints, wire::OmitEmpty{}, AtMost{kMaxBodies, "are too many"});
 }
 
 void fields(auto& io, Is<CastRays> auto& m) {
@@ -188,6 +195,7 @@ void fields(auto& io, Is<Opened> auto& m) {
   io("description", m.description, kText);
   io("state", m.state);
   io("reports_contacts", m.reports_contacts);
+  io("takes_setpoints", m.takes_setpoints);
 }
 
 void fields(auto& io, Is<Distances> auto& m) {

@@ -80,6 +80,9 @@ TEST(Conversation, AdvancesGoForwardStepByStep) {
   expect_refused(advanced, Request(Advance{at(4), {}}), "4000000 ns");
   expect_refused(advanced, Request(Advance{at(5) + Duration(1), {}}), "5000001 ns");
   expect_refused(advanced, Request(Advance{at(6), {{1, {}}}}), "Advance.commands");
+  expect_refused(advanced, Request(Advance{at(6), {}, {{1, {}}}}), "Advance.setpoints");
+  const uav::Setpoint three{.mask = uav::kRotorSpeeds, .rotor_speeds_rad_s = {1, 1, 1}};
+  expect_refused(advanced, Request(Advance{at(6), {}, {{0, three}}}), "rotor speeds");
   EXPECT_TRUE(
       after({small_open(), Advance{at(5), {}}, Reset{}}).check(Request(Advance{at(1), {}})).ok());
 }

@@ -22,9 +22,15 @@ class RandomMessage {
       case 1:
         return Reset{word()};
       case 2:
-        return Advance{time(), many<Command>([this] {
-                         return Command{random_.bits() % 1024, {vec3(), number()}};
-                       })};
+        return Advance{
+            time(), many<Command>([this] {
+              return Command{random_.bits() % 1024, {vec3(), number()}};
+            }),
+            many<SetpointCommand>([this] {
+              return SetpointCommand{
+                  random_.bits() % 1024,
+                  {.mask = uav::kAttitude | uav::kThrust, .q_WB = quat(), .thrust_N = 5}};
+            })};
       case 3:
         return cast_rays();
       default:
@@ -36,7 +42,7 @@ class RandomMessage {
   Reply reply(std::uint32_t kind) {
     switch (kind) {
       case 0:
-        return Opened{text(), state(), coin()};
+        return Opened{text(), state(), coin(), coin()};
       case 1:
         return state();
       case 2:

@@ -26,6 +26,8 @@ TEST(Schema, HasTheFieldsOfEachMessageInTheirOrder) {
   expect_same<UavDescription>("Uav");
   expect_same<VisualMaterial>("Look");
   expect_same<Command>("Command");
+  expect_same<uav::Setpoint>("Setpoint");
+  expect_same<SetpointCommand>("SetpointCommand");
   expect_same<Motion>("Motion");
   expect_same<BodyName>("BodyName");
   expect_same<Open>("Open");

@@ -102,7 +102,15 @@ TEST(Validate, AdvancesAreSane) {
        {"to", [](Advance& a) { a.to = SimTime::max(); }},
        {"commands", [](Advance& a) { a.commands[0].uav = kMaxBodies; }},
        {"commands", [](Advance& a) { a.commands[0].command.yaw_rate_rad_s = kNaN; }},
-       {"commands", [](Advance& a) { a.commands.resize(kMaxBodies + 1); }}});
+       {"commands", [](Advance& a) { a.commands.resize(kMaxBodies + 1); }},
+       {"setpoints",
+        [](Advance& a) {
+          a.setpoints = {{kMaxBodies, {}}};
+        }},
+       {"setpoints", [](Advance& a) { a.setpoints.resize(kMaxBodies + 1); }},
+       {"set-point", [](Advance& a) {
+          a.setpoints = {{0, {.mask = 0}}};
+        }}});
 }
 
 TEST(Validate, RaysAreSane) {

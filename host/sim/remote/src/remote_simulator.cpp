@@ -45,8 +45,14 @@ class RemoteSimulator final : public Simulator {
     protocol::Opened opened = session_.open(make_open(world_, warn));
     description_ = printable(opened.description);
     reports_contacts_ = opened.reports_contacts;
+    takes_setpoints_ = opened.takes_setpoints;
     meter_.warn_of_starts(warn);
     session_.set_name(description_);
+    if (!takes_setpoints_)
+      warn({Consequence::kNoEffect,
+            {},
+            "simulator",
+            "takes velocities in the heading frame only; other set-points are refused"});
     start_at(std::move(opened.state));
   }
 
@@ -65,9 +71,10 @@ class RemoteSimulator final : public Simulator {
     while (now() < t) advance_piece(std::min(t, now() + longest_advance()));
   }
 
-  void apply(std::size_t uav, const uav::VelocityCommand& command) override {
+  bool takes_setpoints() const override { return takes_setpoints_; }
+  void apply(std::size_t uav, const uav::Setpoint& setpoint) override {
     check_uav(uav);
-    commands_[uav] = command;
+    commands_[uav] = setpoint;
   }
 
   void capture(Snapshot& snapshot) const override {
@@ -119,7 +126,12 @@ class RemoteSimulator final : public Simulator {
   void advance_piece(SimTime t) {
     protocol::Advance request{t, {}};
     for (std::size_t i = 0; i < commands_.size(); ++i) {
-      if (commands_[i]) request.commands.push_back({static_cast<std::uint32_t>(i), *commands_[i]});
+      if (!commands_[i]) continue;
+      const auto uav = static_cast<std::uint32_t>(i);
+      if (const auto velocity = heading_velocity(*commands_[i]))
+        request.commands.push_back({uav, *velocity});
+      else
+        request.setpoints.push_back({uav, *commands_[i]});
       commands_[i].reset();
     }
     take(session_.ask<protocol::State>(request));
@@ -178,12 +190,13 @@ class RemoteSimulator final : public Simulator {
   StateRecorder recorder_;
   ClearanceMeter meter_;
   bool reports_contacts_ = false;
+  bool takes_setpoints_ = false;
   ContactLog contacts_;
   std::set<std::string> touched_;  // names
   SensorSuite sensors_;
   std::string description_;
   /// Not sent yet.
-  std::vector<std::optional<uav::VelocityCommand>> commands_;
+  std::vector<std::optional<uav::Setpoint>> commands_;
   Snapshot between_;  // reused
   protocol::State state_;
   std::vector<uav::Pose> X_WB_;

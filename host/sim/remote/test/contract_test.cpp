@@ -15,7 +15,9 @@ std::unique_ptr<Simulator> make_served(World world) {
   // Shared, so that it lives as long as the simulator that it serves.
   options.why_give_up = [external] { return std::nullopt; };
   return make_remote_simulator(std::move(world), std::move(connection), std::move(options),
-                               [](const Warning& warning) { ADD_FAILURE() << to_line(warning); });
+                               [](const Warning& warning) {
+                                 EXPECT_THAT(to_line(warning), ::testing::HasSubstr("velocities"));
+                               });
 }
 
 }  // namespace

@@ -96,8 +96,8 @@ TEST(RemoteSimulator, SplitsLongAdvancesAtSteps) {
 
 TEST(RemoteSimulator, SendsTheLastCommandOfEachUavOnce) {
   const Served served(file_world(busy_world()));
-  served.simulator->apply(1, {{1.0, 0.0, 0.0}, 0.0});
-  served.simulator->apply(1, {{2.0, 0.0, 0.0}, 0.0});
+  served.simulator->apply(1, uav::to_setpoint({{1.0, 0.0, 0.0}, 0.0}));
+  served.simulator->apply(1, uav::to_setpoint({{2.0, 0.0, 0.0}, 0.0}));
   served.simulator->advance_to(at(60ms));
   const auto advances = all<Advance>(served.external.requests());
   ASSERT_EQ(advances.size(), 2u);
@@ -105,6 +105,26 @@ TEST(RemoteSimulator, SendsTheLastCommandOfEachUavOnce) {
   EXPECT_EQ(advances[0].commands[0].uav, 1u);
   EXPECT_EQ(advances[0].commands[0].command.velocity_H_m_s.x, 2.0);
   EXPECT_TRUE(advances[1].commands.empty());
+  EXPECT_FALSE(served.simulator->takes_setpoints());
+}
+
+TEST(RemoteSimulator, SendsSetpointsToASimulatorThatTakesThem) {
+  const auto takes_them = [](const Request&, Reply reply) -> std::optional<Reply> {
+    if (auto* opened = std::get_if<Opened>(&reply)) opened->takes_setpoints = true;
+    return reply;
+  };
+  const Served served(file_world(busy_world()), takes_them);
+  EXPECT_TRUE(served.simulator->takes_setpoints());
+  const uav::Setpoint there{.mask = uav::kPosition, .in_heading = false, .p_WB_m = {1, 2, 3}};
+  served.simulator->apply(0, {});
+  served.simulator->apply(1, there);
+  served.simulator->advance_to(at(10ms));
+  const auto advances = all<Advance>(served.external.requests());
+  ASSERT_EQ(advances.size(), 1u);
+  EXPECT_EQ(advances[0].commands.size(), 1u);
+  ASSERT_EQ(advances[0].setpoints.size(), 1u);
+  EXPECT_EQ(advances[0].setpoints[0].uav, 1u);
+  EXPECT_EQ(advances[0].setpoints[0].setpoint, there);
 }
 
 // A file may write any character into a name.
@@ -118,7 +138,7 @@ TEST(RemoteSimulator, WarnsInPrintableLines) {
   std::vector<std::string> warnings;
   make_remote_simulator(world, external.take_connection(), {},
                         [&](const Warning& warning) { warnings.push_back(to_line(warning)); });
-  EXPECT_THAT(warnings, ::testing::ElementsAre(HasSubstr("'eg?g'")));
+  EXPECT_THAT(warnings, ::testing::ElementsAre(HasSubstr("'eg?g'"), HasSubstr("takes velocities")));
 }
 
 TEST(RemoteSimulator, KnowsTheStateWithoutARequest) {
@@ -135,7 +155,7 @@ TEST(RemoteSimulator, KnowsTheStateWithoutARequest) {
 
 TEST(RemoteSimulator, MeasuresTheCapturedWorld) {
   const Served served(file_world(test_world()));
-  served.simulator->apply(0, {{0.0, 0.0, 1.0}, 0.0});
+  served.simulator->apply(0, uav::to_setpoint({{0.0, 0.0, 1.0}, 0.0}));
   Snapshot snapshot;
   served.simulator->capture(snapshot);
   served.simulator->advance_to(at(1s));

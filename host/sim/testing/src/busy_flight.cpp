@@ -60,7 +60,7 @@ Observation observe(Simulator& simulator, const Snapshot& snapshot, std::uint64_
 Observation fly_in_one_piece(Simulator& simulator, std::uint64_t seed) {
   simulator.reset(seed);
   simulator.advance_to(kCommanded);
-  simulator.apply(0, kForward);
+  simulator.apply(0, to_setpoint(kForward));
   simulator.advance_to(kObserved);
   Snapshot snapshot;
   simulator.capture(snapshot);
@@ -72,7 +72,7 @@ Observation fly_in_pieces(Simulator& simulator, std::uint64_t seed) {
   KeyedRandom random({1, 2, 3});
   Snapshot snapshot;
   while (simulator.now() < kObserved) {
-    if (simulator.now() == kCommanded) simulator.apply(0, kForward);
+    if (simulator.now() == kCommanded) simulator.apply(0, to_setpoint(kForward));
     const SimTime limit = simulator.now() < kCommanded ? kCommanded : kObserved;
     simulator.advance_to(std::min(limit, simulator.now() + (1 + random.bits() % 40) * 1ms));
     simulator.capture(snapshot);

@@ -151,10 +151,10 @@ void FakeSimulator::computing(std::size_t uav, double cores) {
   bodies_[uav].meter->computing(cores);
 }
 
-void FakeSimulator::apply(std::size_t uav, const uav::VelocityCommand& command) {
+void FakeSimulator::apply(std::size_t uav, const uav::Setpoint& setpoint) {
   check_uav(uav);
-  bodies_[uav].command = command;
-  applied_.push_back({now_, uav, command});
+  bodies_[uav].command = heading_velocity(setpoint).value_or(uav::VelocityCommand{});
+  applied_.push_back({now_, uav, setpoint});
 }
 
 void FakeSimulator::capture(Snapshot& snapshot) const {

@@ -11,6 +11,7 @@
 #include <tether/computer/clock.h>
 #include <tether/uav/catalogue.h>
 #include <tether/uav/samples.h>
+#include <tether/uav/setpoint.h>
 
 /// The messages between SUT and coordinator. The wire format (FlatBuffers, `schema/link.fbs`) has
 /// the same fields; `codec.h` converts. Order: Hello → Welcome or Refusal; then Requests, each

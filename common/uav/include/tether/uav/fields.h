@@ -90,6 +90,29 @@ void fields(auto& io, Is<MultirotorParameters> auto& m) {
   io("max_yaw_acceleration_rad_s2", m.max_yaw_acceleration_rad_s2, kNotNegative);
 }
 
+// --- commands -----------------------------------------------------------------------------------
+
+void fields(auto& io, Is<Setpoint> auto& m) {
+  io("mask", m.mask);
+  io("in_heading", m.in_heading);
+  io("p_wb_m", m.p_WB_m);
+  io("velocity_m_s", m.velocity_m_s);
+  io("acceleration_m_s2", m.acceleration_m_s2);
+  io("yaw_rad", m.yaw_rad);
+  io("yaw_rate_rad_s", m.yaw_rate_rad_s);
+  io("q_wb", m.q_WB);
+  io("w_wb_b_rad_s", m.w_WB_B_rad_s);
+  io("thrust_n", m.thrust_N);
+  io("rotor_speeds_rad_s", m.rotor_speeds_rad_s, wire::OmitEmpty{},
+     wire::AtMost{MultirotorState::kMaxRotors});
+  io.require([&m] { return complaint_about(m).empty(); }, "set-point",
+             [&m] { return "is invalid: " + complaint_about(m); });
+}
+void fields(auto& io, Is<TimedSetpoint> auto& m) {
+  io("after_ns", m.after);
+  io("setpoint", m.setpoint);
+}
+
 // --- catalogue ----------------------------------------------------------------------------------
 
 void limit_fields(auto& io, auto& m) {

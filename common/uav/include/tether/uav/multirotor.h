@@ -6,9 +6,9 @@
 
 #include <tether/base/time.h>
 #include <tether/uav/math.h>
-#include <tether/uav/samples.h>
+#include <tether/uav/setpoint.h>
 
-/// The UAV: a rigid body with rotors and a velocity controller. Pure functions of state and input,
+/// The UAV: a rigid body with rotors and a controller. Pure functions of state and input,
 /// shared by all simulator back ends, so that the same UAV flies in each. The back end integrates
 /// the rigid body; these functions compute the force and torque that act on it.
 namespace tether::uav {
@@ -33,7 +33,7 @@ struct MultirotorParameters {
   double time_constant_up_s = 0.0;
   double time_constant_down_s = 0.0;
 
-  // Limits of the velocity controller.
+  // Limits of the controller.
   double max_tilt_rad = 0.35;
   double max_horizontal_speed_m_s = 5.0;
   double max_vertical_speed_m_s = 2.0;
@@ -71,10 +71,11 @@ struct MultirotorState {
   static constexpr std::size_t kMaxRotors = 8;
   /// The first rotors.size() are in use.
   std::array<double, kMaxRotors> rotor_speed_rad_s{};
-  Vec3 velocity_setpoint_H_m_s;   ///< the commanded velocity after its acceleration limit
-  Vec3 velocity_reference_H_m_s;  ///< the same behind the lag with which thrust turns and grows
-  Vec3 velocity_integral_W;       ///< integral term of the velocity loop [m/s²]
-  Vec3 rate_integral_B;           ///< integral term of the rate loop [rad/s²]
+  bool velocity_in_W = false;   ///< the frame of the next two: W, else H
+  Vec3 velocity_setpoint_m_s;   ///< the commanded velocity after its acceleration limit
+  Vec3 velocity_reference_m_s;  ///< the same behind the lag with which thrust turns and grows
+  Vec3 velocity_integral_W;     ///< integral term of the velocity loop [m/s²]
+  Vec3 rate_integral_B;         ///< integral term of the rate loop [rad/s²]
   double yaw_rate_setpoint_rad_s = 0.0;  ///< the commanded yaw rate after its acceleration limit
   double yaw_setpoint_rad = 0.0;         ///< integral of the yaw rate set-point; in (−π, π]
   friend bool operator==(const MultirotorState&, const MultirotorState&) = default;
@@ -87,8 +88,11 @@ struct Demand {
 };
 
 using RotorThrusts = std::array<double, MultirotorState::kMaxRotors>;  // [N]
+using RotorSpeeds = std::array<double, MultirotorState::kMaxRotors>;   // [rad/s]
 
 double max_rotor_thrust_N(const MultirotorParameters& parameters);
+/// Of all rotors together at full speed.
+FlightLimits flight_limits(const MultirotorParameters& parameters);
 
 /// Divides a demand among the rotors of a layout.
 class Mixer {
@@ -126,17 +130,20 @@ class Multirotor {
   /// Rotors that turn faster slow down to this.
   void limit_rotor_speed(double rad_s) { parameters_.max_rotor_speed_rad_s = rad_s; }
 
-  /// One step of controller and rotors: cascaded velocity → attitude → body rate → rotor speeds
-  /// (geometric attitude error after Lee, Leok, McClamroch, CDC 2010), first-order rotors, thrust,
-  /// reaction torque and rotor drag.
+  /// One step of controller and rotors: cascaded position → velocity → acceleration → attitude →
+  /// body rates → rotor speeds, entered at the level of the set-point (geometric attitude error
+  /// after Lee, Leok, McClamroch, CDC 2010), first-order rotors, thrust, reaction torque and rotor
+  /// drag.
   ///
   /// Call once per step with the state at its beginning; apply the returned wrench for the whole
   /// step. Deterministic, allocates nothing, never fails: non-finite input gives a non-finite
-  /// wrench.
-  Wrench step(const BodyState& body, const VelocityCommand& command, MultirotorState& state) const;
+  /// wrench. @pre the mask of `setpoint` has a level, and it has as many rotor speeds as rotors
+  Wrench step(const BodyState& body, const Setpoint& setpoint, MultirotorState& state) const;
 
  private:
-  void advance_rotors(const RotorThrusts& wanted, MultirotorState& state) const;
+  RotorSpeeds wanted_speeds(const BodyState& body, const Setpoint& setpoint,
+                            MultirotorState& state) const;
+  void advance_rotors(const RotorSpeeds& wanted, MultirotorState& state) const;
 
   MultirotorParameters parameters_;
   double gravity_m_s2_;

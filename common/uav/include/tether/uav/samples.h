@@ -82,15 +82,4 @@ constexpr SensorKind kind_of() {
 
 SimTime sampled_at(const Sample& sample);
 
-/// A velocity set-point, held until the next one. Linear velocity is in the heading frame H: x
-/// ahead along the heading, y left, z up, for any roll and pitch of the UAV.
-struct VelocityCommand {
-  Vec3 velocity_H_m_s;
-  double yaw_rate_rad_s = 0.0;  ///< counter-clockwise seen from above
-  friend bool operator==(const VelocityCommand&, const VelocityCommand&) = default;
-};
-
-/// Whether every field is finite and within 100 m/s and 100 rad/s, which no multirotor exceeds.
-bool is_valid(const VelocityCommand& command);
-
 }  // namespace tether::uav

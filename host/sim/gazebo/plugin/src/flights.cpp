@@ -12,19 +12,19 @@ Flights::Flights(const sim::protocol::Open& open) : gravity_m_s2_(open.gravity_m
 
 void Flights::reset() {
   for (Flight& flight : flights_) {
-    flight.command = {};
+    flight.setpoint = {};
     flight.state =
         uav::hover_state(flight.multirotor.parameters(), gravity_m_s2_, flight.start_yaw_rad);
   }
 }
 
-void Flights::set_command(std::size_t uav, const uav::VelocityCommand& command) {
-  flights_[uav].command = command;
+void Flights::set_setpoint(std::size_t uav, const uav::Setpoint& setpoint) {
+  flights_[uav].setpoint = setpoint;
 }
 
 uav::Wrench Flights::step(std::size_t uav, const uav::BodyState& body) {
   Flight& flight = flights_[uav];
-  return flight.multirotor.step(body, flight.command, flight.state);
+  return flight.multirotor.step(body, flight.setpoint, flight.state);
 }
 
 }  // namespace tether::gazebo_plugin

@@ -63,7 +63,7 @@ void Session::warm_up() {
   if (!simulation_.is_ready()) return;
   phase_ = Phase::kServing;
   reset(0);
-  host_.answer(protocol::Opened{simulation_.description(), state(), true});
+  host_.answer(protocol::Opened{simulation_.description(), state(), true, true});
 }
 
 void Session::reset(std::uint64_t seed) {
@@ -82,8 +82,9 @@ void Session::handle(const protocol::Reset& wanted) {
 
 void Session::handle(const protocol::Advance& advance) {
   for (const protocol::Command& command : advance.commands) {
-    flights_.set_command(command.uav, command.command);
+    flights_.set_setpoint(command.uav, to_setpoint(command.command));
   }
+  for (const auto& [uav, setpoint] : advance.setpoints) flights_.set_setpoint(uav, setpoint);
   past_.clear();
   touches_.clear();
   steps_left_ = (advance.to - now_) / open_.step;

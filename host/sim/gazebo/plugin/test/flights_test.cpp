@@ -20,7 +20,7 @@ TEST(Flights, HoverThenFollowTheLastCommandUntilAReset) {
   Flights flights(open_with_uav());
   const uav::Wrench first = flights.step(0, at_rest());
   EXPECT_NEAR(first.force_B.z, uav::hummingbird().mass_kg * 9.81, 1e-6);
-  flights.set_command(0, {{0, 0, 1}, 0});
+  flights.set_setpoint(0, uav::to_setpoint({{0, 0, 1}, 0}));
   for (int i = 0; i < 20; ++i) (void)flights.step(0, at_rest());
   EXPECT_GT(flights.step(0, at_rest()).force_B.z, uav::hummingbird().mass_kg * 9.9);
   flights.reset();

@@ -144,6 +144,7 @@ TEST_F(SessionTest, ReportsWhatTheUavTouchesInEachStep) {
                        {{ball, wall}, {}, {1, 0, 0}}};
   run({open(), advance_to(3ms), advance_to(4ms), advance_to(4ms)});
   EXPECT_TRUE(std::get<protocol::Opened>(host.replies[0]).reports_contacts);
+  EXPECT_TRUE(std::get<protocol::Opened>(host.replies[0]).takes_setpoints);
   EXPECT_EQ(state(1).touches.size(), 9U);
   EXPECT_TRUE(state(3).touches.empty());
   ASSERT_EQ(state(2).touches.size(), 3U);

@@ -16,6 +16,7 @@
 #include <tether/sim/world.h>
 #include <tether/uav/multirotor.h>
 #include <tether/uav/samples.h>
+#include <tether/uav/setpoint.h>
 
 namespace tether::sim {
 
@@ -59,8 +60,12 @@ class Simulator {
   /// Steps until `now() == t`. Allocates nothing per step. @pre t ≥ now(), t on the grid.
   virtual void advance_to(SimTime t) = 0;
 
-  /// Sets the command that UAV `uav` follows in every step from `now()` on, until the next call.
-  virtual void apply(std::size_t uav, const uav::VelocityCommand& command) = 0;
+  /// Whether UAVs follow any set-point; else only velocities in the heading frame.
+  virtual bool takes_setpoints() const { return false; }
+  /// Sets what UAV `uav` follows in every step from `now()` on, until the next call.
+  /// @pre the set-point is valid for the UAV, and a velocity in the heading frame unless
+  ///   takes_setpoints()
+  virtual void apply(std::size_t uav, const uav::Setpoint& setpoint) = 0;
 
   /// Captures the state at `now()`. Cheap (a copy of the small state; no rendering).
   virtual void capture(Snapshot& snapshot) const = 0;

@@ -11,6 +11,7 @@
 #include <tether/base/time.h>
 #include <tether/uav/catalogue.h>
 #include <tether/uav/samples.h>
+#include <tether/uav/setpoint.h>
 
 namespace tether::client {
 

@@ -11,7 +11,7 @@
 #include <tether/uav/camera_model.h>
 #include <tether/uav/math.h>
 #include <tether/uav/multirotor.h>
-#include <tether/uav/samples.h>
+#include <tether/uav/setpoint.h>
 
 /// The messages between the host and an external simulator (docs/guide/simulator-protocol.md). The
 /// simulator answers each request of the host with one reply, in order. SI units; W is ENU, B is
@@ -83,11 +83,18 @@ struct Command {
   uav::VelocityCommand command;
 };
 
+/// Any other set-point.
+struct SetpointCommand {
+  std::uint32_t uav = 0;
+  uav::Setpoint setpoint;
+};
+
 /// Sets the commands that the UAVs follow from now on, then steps until ST is `to`: at a step
 /// boundary, not before now. Answered by State.
 struct Advance {
   SimTime to;
   std::vector<Command> commands;
+  std::vector<SetpointCommand> setpoints{};  ///< only if Opened::takes_setpoints
 };
 
 /// Casts rays from S at collision shapes, with the bodies at the poses `X_WB` instead of their
@@ -148,6 +155,7 @@ struct Opened {
   std::string description;  ///< name and version, for the record: "Gazebo 11.1.0, ODE"
   State state;
   bool reports_contacts = false;  ///< State::touches has everything that UAVs touch
+  bool takes_setpoints = false;   ///< else only velocities in the heading frame
 };
 
 struct Distances {

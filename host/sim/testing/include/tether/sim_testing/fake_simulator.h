@@ -26,7 +26,7 @@ class FakeSimulator final : public Simulator {
   struct AppliedCommand {
     SimTime at;
     std::size_t uav = 0;
-    uav::VelocityCommand command;
+    uav::Setpoint setpoint;
     friend bool operator==(const AppliedCommand&, const AppliedCommand&) = default;
   };
 
@@ -74,7 +74,9 @@ class FakeSimulator final : public Simulator {
   SimTime now() const override { return now_; }
   void reset(std::uint64_t seed) override;
   void advance_to(SimTime t) override;
-  void apply(std::size_t uav, const uav::VelocityCommand& command) override;
+  bool takes_setpoints() const override { return true; }
+  /// Only velocities in the heading frame move a UAV; it stands still otherwise.
+  void apply(std::size_t uav, const uav::Setpoint& setpoint) override;
   void capture(Snapshot& snapshot) const override;
   /// Camera: the bytes are a hash of (seed, instant, UAV, sensor, index), the first eight the
   /// instant itself. IMU: attitude, yaw rate, and gravity's reaction. Range: distance ahead to the

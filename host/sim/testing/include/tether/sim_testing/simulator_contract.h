@@ -52,14 +52,56 @@ TEST_P(SimulatorContract, StartsHoveringAtStZero) {
 TEST_P(SimulatorContract, FollowsTheCommandFromNowOn) {
   const auto simulator = make(test_world());
   simulator->advance_to(at(std::chrono::milliseconds(100)));
-  simulator->apply(0, {{9.0, 0.0, 0.0}, 0.0});
-  simulator->apply(0, {{1.0, 0.0, 0.0}, 0.0});
+  simulator->apply(0, uav::to_setpoint({{9.0, 0.0, 0.0}, 0.0}));
+  simulator->apply(0, uav::to_setpoint({{1.0, 0.0, 0.0}, 0.0}));
   EXPECT_NEAR(simulator->ground_truth(0).body.v_WB.x, 0.0, 1e-6);
   simulator->advance_to(at(std::chrono::seconds(3)));
   EXPECT_NEAR(simulator->ground_truth(0).body.v_WB.x, 1.0, 0.1);
   simulator->reset(1);
   simulator->advance_to(at(std::chrono::seconds(1)));
   EXPECT_NEAR(simulator->ground_truth(0).body.v_WB.x, 0.0, 1e-3) << "commands end with a reset";
+}
+
+/// What a UAV must do after a second of a set-point: those that are not near a limit.
+struct FlownLevel {
+  uav::Setpoint setpoint;
+  std::function<bool(const uav::BodyState&)> is_followed;
+};
+inline std::vector<FlownLevel> flown_levels(const uav::MultirotorParameters& airframe,
+                                            double gravity_m_s2) {
+  using namespace uav;
+  const double weight_N = airframe.mass_kg * gravity_m_s2;
+  const double hover_rad_s = hover_state(airframe, gravity_m_s2, 0.0).rotor_speed_rad_s[0];
+  const auto ahead_in_W = [](const BodyState& b) { return rotate(b.q_WB, {1, 0, 0}); };
+  return {{{.mask = kPosition | kYaw, .in_heading = false, .p_WB_m = {0.3, 0, 1.2}, .yaw_rad = 0.2},
+           [=](const BodyState& b) {
+             return b.p_WB.x > 0.1 && b.p_WB.z > 1.08 && ahead_in_W(b).y > 0.1;
+           }},
+          {{.mask = kVelocity, .in_heading = false, .velocity_m_s = {0, 0.5, 0}},
+           [](const BodyState& b) { return b.v_WB.y > 0.4; }},
+          {{.mask = kAcceleration, .in_heading = false, .acceleration_m_s2 = {0, 0.5, 0.2}},
+           [](const BodyState& b) { return b.v_WB.y > 0.3 && b.v_WB.z > 0.15; }},
+          {{.mask = kAttitude | kThrust, .q_WB = from_rpy(0.1, 0, 0), .thrust_N = weight_N},
+           [](const BodyState& b) {
+             return rotate(b.q_WB, {0, 1, 0}).z > 0.09;
+           }},
+          {{.mask = kBodyRates | kThrust, .w_WB_B_rad_s = {0, 0, 0.5}, .thrust_N = weight_N},
+           [](const BodyState& b) { return b.w_WB_B.z > 0.45; }},
+          {{.mask = kRotorSpeeds,
+            .rotor_speeds_rad_s = std::vector<double>(airframe.rotors.size(), 1.05 * hover_rad_s)},
+           [](const BodyState& b) { return b.v_WB.z > 0.7; }}};
+}
+
+TEST_P(SimulatorContract, FollowsSetpointsOfEveryLevelIfItTakesThem) {
+  const auto simulator = make(test_world());
+  if (!simulator->takes_setpoints()) GTEST_SKIP() << "takes velocities only";
+  const World& world = simulator->world();
+  for (const FlownLevel& level : flown_levels(world.uavs[0].airframe, world.gravity_m_s2)) {
+    simulator->reset(1);
+    simulator->apply(0, level.setpoint);
+    simulator->advance_to(at(std::chrono::seconds(1)));
+    EXPECT_TRUE(level.is_followed(simulator->ground_truth(0).body)) << level.setpoint.mask;
+  }
 }
 
 TEST_P(SimulatorContract, SamplesCarryInstantAndIndex) {
@@ -87,7 +129,7 @@ TEST_P(SimulatorContract, ExpectationsChangeNoMeasurement) {
   };
   for (std::size_t i = 0; i < snapshots.size(); ++i) {
     for (const auto& simulator : {told, untold}) {
-      simulator->apply(0, {{1.0, 0.0, 0.0}, 0.5});
+      simulator->apply(0, uav::to_setpoint({{1.0, 0.0, 0.0}, 0.5}));
       simulator->advance_to(at(i * std::chrono::milliseconds(20)));
       simulator->capture(snapshots[i]);
     }
@@ -122,7 +164,7 @@ TEST_P(SimulatorContract, NavigationSensorsMeasureTheGroundTruth) {
   sensors.push_back({"odometry", {}, 0.0, OdometryModel{}});
   const uav::Vec3 field_T = world.magnetic_field_T;
   const auto simulator = make(std::move(world));
-  simulator->apply(0, {{1.0, 0.5, 0.25}, 0.5});
+  simulator->apply(0, uav::to_setpoint({{1.0, 0.5, 0.25}, 0.5}));
   simulator->advance_to(at(std::chrono::seconds(1)));
   const uav::BodyState truth = simulator->ground_truth(0).body;
   ASSERT_GT(truth.v_WB.x, 0.2);
@@ -164,7 +206,7 @@ TEST_P(SimulatorContract, AScanMeasuresEachColumnInItsOwnInstant) {
   sensors.push_back({"spinning", {}, 0.0, scan});
   const auto simulator = make(std::move(world));
   const auto fly_to = [&](Duration time) {
-    simulator->apply(0, {{}, 1.0});
+    simulator->apply(0, uav::to_setpoint({{}, 1.0}));
     simulator->advance_to(at(time));
     return measure_now<uav::ScanSample>(*simulator, first).ranges_m;
   };

@@ -15,9 +15,9 @@ class Flights {
   explicit Flights(const sim::protocol::Open& open);
 
   std::size_t size() const { return flights_.size(); }
-  /// Hovering at the start poses, without a command.
+  /// Hovering at the start poses, without a set-point.
   void reset();
-  void set_command(std::size_t uav, const uav::VelocityCommand& command);
+  void set_setpoint(std::size_t uav, const uav::Setpoint& setpoint);
   /// One step of a UAV, with its body at the beginning of the step.
   uav::Wrench step(std::size_t uav, const uav::BodyState& body);
 
@@ -25,7 +25,7 @@ class Flights {
   struct Flight {
     uav::Multirotor multirotor;
     double start_yaw_rad = 0.0;
-    uav::VelocityCommand command;
+    uav::Setpoint setpoint;
     uav::MultirotorState state;
   };
 
