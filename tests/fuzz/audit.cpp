@@ -93,8 +93,12 @@ void add_message(Choices& choices, std::uint64_t order, record::Record& record) 
   const SimTime at = time<SimTime>(choices);
   switch (choices.below(8)) {
     case 0:
-      return record.commands.push_back(
+      record.commands.push_back(
           {at, order, {name(choices), choices.byte(), time<SimTime>(choices), 1, 2, 3, 4}});
+      record.commands.back().message.index = choices.byte();
+      if (choices.coin()) record.commands.back().message.loss = "brake";
+      if (choices.coin()) record.commands.back().message.setpoint.emplace();
+      return;
     case 1:
       return record.ground_truth.push_back({at, order, {name(choices), time<SimTime>(choices)}});
     case 2:

@@ -44,6 +44,7 @@ void fly(client::Vehicle& vehicle) {
       calls.made(vehicle.read<uav::RangeSample>(sensor.name, read));
     }
     calls.made(vehicle.command_velocity({}));
+    calls.made(vehicle.command({.mask = uav::kPosition, .in_heading = false}));
     calls.made(vehicle.annotate("roi", "{}"));
     calls.made(vehicle.sleep_for(Duration(1)));
     require(vehicle.now() >= before, "ET goes back");

@@ -106,6 +106,16 @@ link::Request Peers::request(Peer& peer) {
         break;
       }
       [[fallthrough]];
+    case 3: {
+      link::SetTrajectory set;
+      for (std::size_t i = choices_.below(4); i > 0; --i) {
+        set.setpoints.push_back({Duration(choices_.byte()), {}});
+        set.setpoints.back().setpoint.mask = choices_.byte();
+        set.setpoints.back().setpoint.in_heading = choices_.coin();
+      }
+      request.body = std::move(set);
+      break;
+    }
     default:
       request.body = link::ReadSensor{static_cast<std::uint32_t>(choices_.below(4)),
                                       choices_.coin(), flags % 8 == 7};

@@ -113,6 +113,11 @@ void fields(auto& io, Is<SetVelocity> auto& m) {
   io("velocity_h_m_s", m.command.velocity_H_m_s);
   io("yaw_rate_rad_s", m.command.yaw_rate_rad_s);
 }
+void fields(auto& io, Is<SetTrajectory> auto& m) {
+  io("setpoints", m.setpoints, AtMost{uav::kMaxTrajectorySetpoints});
+  io.require([&m] { return complaint_about(m.setpoints).empty(); }, "trajectory",
+             [&m] { return "is invalid: " + complaint_about(m.setpoints); });
+}
 void fields(auto& io, Is<Sleep> auto& m) {
   io("until_et_ns", m.until);
   io("is_relative", m.is_relative);

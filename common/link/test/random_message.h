@@ -97,6 +97,7 @@ class RandomMessage {
     out.peers.assign(random_.bits() % 3, text());
     out.real_time_factor = 0.01 + random_.uniform();
     if (coin()) out.catalogue.battery_capacity_C = std::abs(number());
+    if (coin()) out.catalogue.limits = {random_.bits() % 9, std::abs(number()), 20.0};
     return out;
   }
 
@@ -106,9 +107,20 @@ class RandomMessage {
     return out;
   }
 
+  std::vector<uav::TimedSetpoint> trajectory() {
+    std::vector<uav::TimedSetpoint> out;
+    for (std::uint32_t i = 0; i <= random_.bits() % 4; ++i) {
+      out.push_back({Duration(5 * i), {.mask = uav::kPosition | uav::kYaw, .in_heading = false}});
+      out.back().setpoint.p_WB_m = vec3();
+      out.back().setpoint.yaw_rad = number();
+    }
+    if (coin()) out.back().setpoint = {.mask = uav::kRotorSpeeds, .rotor_speeds_rad_s = {1, 2, 3}};
+    return out;
+  }
+
   Message request() {
     Request out{1 + word() / 2, time<ExecTime>(), time<ExecTime>().time_since_epoch(), {}};
-    const std::uint32_t kind = random_.bits() % 7;
+    const std::uint32_t kind = random_.bits() % 8;
     if (kind == 0) out.body = ReadSensor{random_.bits() % 1000, coin(), coin()};
     if (kind == 1) out.body = SetVelocity{{vec3(), number()}};
     if (kind == 2) out.body = Sleep{time<ExecTime>(), coin()};
@@ -116,6 +128,7 @@ class RandomMessage {
     if (kind == 4) out.body = SendMessage{text(), bytes()};
     if (kind == 5) out.body = ReceiveMessage{time<ExecTime>().time_since_epoch()};
     if (kind == 6) out.body = ReadBattery{};
+    if (kind == 7) out.body = SetTrajectory{trajectory()};
     out.stages = stages();
     return out;
   }

@@ -46,6 +46,9 @@ TEST(Schema, HasTheFieldsOfEachMessageInTheirOrder) {
   expect_same<Refusal>("Refusal");
   expect_same<ReadSensor>("ReadSensor");
   expect_same<SetVelocity>("SetVelocity");
+  expect_same<uav::Setpoint>("Setpoint");
+  expect_same<uav::TimedSetpoint>("TimedSetpoint");
+  expect_same<SetTrajectory>("SetTrajectory");
   expect_same<Sleep>("Sleep");
   expect_same<SendMessage>("SendMessage");
   expect_same<ReceiveMessage>("ReceiveMessage");

@@ -69,6 +69,14 @@ TEST(Validate, Requests) {
   expect({"sequence", Request{}});
   expect({"velocity command", request_with(SetVelocity{{{kNan, 0, 0}, 0}})});
   expect({"velocity command", request_with(SetVelocity{{{0, 0, 0}, 1e9}})});
+  const uav::Setpoint here{.mask = uav::kPosition, .in_heading = false};
+  expect({"", request_with(SetTrajectory{{{Duration(0), here}, {Duration(1), here}}})});
+  expect({"set-point", request_with(SetTrajectory{{{Duration(0), {.mask = uav::kPosition}}}})});
+  expect({"q_wb", request_with(SetTrajectory{{{Duration(0), {.q_WB = {2, 0, 0, 0}}}}})});
+  expect({"trajectory", request_with(SetTrajectory{})});
+  expect({"trajectory", request_with(SetTrajectory{{{Duration(0), here}, {Duration(0), here}}})});
+  expect({"setpoints",
+          request_with(SetTrajectory{std::vector<uav::TimedSetpoint>(1025, {Duration(0), here})})});
   expect({"until", request_with(Sleep{from_ns<ExecTime>(-5)})});
   expect({"bytes", request_with(SendMessage{"", std::vector<std::uint8_t>(kMaxRadioBytes + 1)})});
   expect({"to", request_with(SendMessage{std::string(kMaxNameBytes + 1, 'u'), {}})});

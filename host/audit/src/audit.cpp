@@ -23,7 +23,7 @@ Verdict audit(const record::Record& record) {
 
   const Boundaries grid(record.header.step);
   check_consistency(record, grid, report);
-  check_velocities(record, report);
+  check_setpoints(record, report);
   check_motion(record, report);
   check_contacts(record, report);
   check_radio(record, grid, report);

@@ -25,8 +25,11 @@ void check_newness(const record::Record& record, Report& report);
 /// cores; on a real one, all of them stop together.
 void check_boards(const record::Record& record, Report& report);
 
+/// When a command arrives at the flight controller: the first set-point takes effect then.
+Wide arrival_of(const record::Interaction& command, const record::SutInfo& sut);
+
 /// Rule 2 for any policy: what takes effect is what was commanded.
-void check_velocities(const record::Record& record, Report& report);
+void check_setpoints(const record::Record& record, Report& report);
 
 /// Rule 2 and the second half of rule 3: the effects of commands.
 void check_commands(const record::Record& record, const Boundaries& grid, Report& report);

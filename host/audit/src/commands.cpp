@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -15,12 +17,15 @@ using record::CommandEffect;
 using record::Interaction;
 using record::Logged;
 
+// Of a UAV that is not in the header, which is a finding of its own.
+const record::SutInfo kUnknown;
+
 // All commands and all effects of one SUT, by sequence.
 struct Row {
   std::vector<const Logged<Interaction>*> commands;
   std::vector<const Logged<CommandEffect>*> effects;
   std::uint64_t last_sequence = 0;  // of any interaction
-  bool concurrent = false;
+  const record::SutInfo* info = &kUnknown;
 };
 
 // A command with an effect time, and its effect in the file.
@@ -30,20 +35,48 @@ struct Due {
   Wide effect_at = 0;
 };
 
+bool has_setpoints(const Interaction& m) {
+  return m.command.has_value() || !m.setpoints.empty();
+}
+
+// Of a set-point that is a velocity in the heading frame.
+std::optional<record::VelocityCommand> velocity_of(const record::Setpoint& m) {
+  constexpr std::uint64_t kVelocity = 2, kYawRate = 16;
+  if (!m.in_heading || (m.mask | kYawRate) != (kVelocity | kYawRate)) return std::nullopt;
+  const auto& [x, y, z] = m.velocity_m_s;
+  return record::VelocityCommand{x, y, z, (m.mask & kYawRate) != 0 ? m.yaw_rate_rad_s : 0.0};
+}
+
+// Whether an effect is that set-point of its command.
+bool is_asked(const CommandEffect& effect, const Interaction& command) {
+  if (command.command)
+    return effect.index == 0 && !effect.setpoint && effect.command() == *command.command;
+  if (effect.index >= command.setpoints.size()) return false;
+  record::Setpoint asked = command.setpoints[effect.index];
+  asked.after = Duration(0);
+  return effect.setpoint == asked || (!effect.setpoint && velocity_of(asked) == effect.command());
+}
+
 template <class Message>
 std::uint64_t sequence_of(const Logged<Message>* entry) {
   return entry->message.sequence;
 }
 
-// Rule 2: a SUT's commands take effect in the order in which it gave them, each once. Leaves the
+// The place of an effect among those of a SUT: a loss comes after the last set-point.
+std::tuple<std::uint64_t, bool, std::uint64_t> place_of(const Logged<CommandEffect>* effect) {
+  const CommandEffect& m = effect->message;
+  return {m.sequence, !m.loss.empty(), m.index};
+}
+
+// Rule 2: a SUT's set-points take effect in the order in which it gave them, each once. Leaves the
 // effects sorted by sequence.
 void check_effect_order(Row& row, Report& report) {
   for (std::size_t i = 1; i < row.effects.size(); ++i) {
-    if (sequence_of(row.effects[i]) <= sequence_of(row.effects[i - 1]))
+    if (place_of(row.effects[i]) <= place_of(row.effects[i - 1]))
       report.add(2, *row.effects[i], "effect after that of command {} of the same SUT",
                  sequence_of(row.effects[i - 1]));
   }
-  std::ranges::stable_sort(row.effects, {}, sequence_of<CommandEffect>);
+  std::ranges::stable_sort(row.effects, {}, place_of);
 }
 
 std::vector<Due> match(Row& row, Report& report) {
@@ -65,6 +98,49 @@ std::vector<Due> match(Row& row, Report& report) {
   return due;
 }
 
+/// What follows the first set-point of a command: the others, and a loss of the link.
+struct Later {
+  Wide at;  // exact
+  std::tuple<std::uint64_t, bool, std::uint64_t> place;
+};
+
+std::vector<Later> later_of(const Interaction& command, const record::SutInfo& sut) {
+  const Wide arrival = arrival_of(command, sut);
+  std::vector<Later> later;
+  for (std::size_t i = 1; i < command.setpoints.size(); ++i)
+    later.push_back({arrival + wide(command.setpoints[i].after), {command.sequence, false, i}});
+  if (sut.setpoint_timeout <= Duration(0)) return later;
+  // A command at the timeout is in time.
+  const std::size_t last = std::max<std::size_t>(command.setpoints.size(), 1) - 1;
+  const Wide begin = last > 0 ? later.back().at : arrival;
+  later.push_back({begin + wide(sut.setpoint_timeout) + 1, {command.sequence, true, last}});
+  return later;
+}
+
+// Rule 2: the set-points of a trajectory after its first one, and losses of the link, take effect
+// when they are due, unless the next command arrives before. The next one after the last command of
+// the record may be one whose reply was still held.
+void check_later(const Row& row, const Boundaries& grid, bool finished, Wide end, Report& report) {
+  for (auto command = row.commands.begin(); command != row.commands.end(); ++command) {
+    const auto next = std::next(command);
+    const bool is_last = next == row.commands.end();
+    for (const auto& [at, place] : later_of((*command)->message, *row.info)) {
+      const Wide due = grid.at_or_after(at);
+      const bool is_due = is_last ? finished && due < end
+                                  : at <= arrival_of((*next)->message, *row.info) && due < end;
+      const bool may_be = is_last || at <= arrival_of((*next)->message, *row.info);
+      const auto found = std::ranges::lower_bound(row.effects, place, {}, place_of);
+      const bool is_there = found != row.effects.end() && place_of(*found) == place;
+      if (!is_there && is_due)
+        report.add(2, **command, "a set-point or loss due at ST {} has no effect", ns(due));
+      if (is_there && (!may_be || wide((*found)->message.applied_at) != due))
+        report.add(
+            2, **found, "effect at ST {}; {}", ns((*found)->message.applied_at),
+            may_be ? fmt::format("it is due at ST {}", ns(due)) : "the next command was there");
+    }
+  }
+}
+
 // Rule 2: no effect without its command. The one exception is a command whose reply was still held
 // when the record ended: for a serial SUT the one after its last; for a concurrent SUT any, but
 // only at the last ST, which does not advance while a reply is held.
@@ -73,8 +149,8 @@ void check_orphans(const Row& row, bool finished, Wide end, Report& report) {
     const bool has_command =
         std::ranges::binary_search(row.commands, sequence_of(effect), {}, sequence_of<Interaction>);
     const bool held_at_end =
-        !finished && (row.concurrent ? wide(effect->message.applied_at) >= end
-                                     : sequence_of(effect) == row.last_sequence + 1);
+        !finished && (row.info->concurrent ? wide(effect->message.applied_at) >= end
+                                           : sequence_of(effect) == row.last_sequence + 1);
     if (!has_command && !held_at_end)
       report.add(2, *effect, "effect without a command of that sequence number");
   }
@@ -122,32 +198,38 @@ Wide end_of(const record::Record& record) {
 
 }  // namespace
 
-void check_velocities(const record::Record& record, Report& report) {
-  std::map<std::pair<std::string, std::uint64_t>, record::VelocityCommand> asked;
+Wide arrival_of(const Interaction& command, const record::SutInfo& sut) {
+  return wide(command.request_at) + wide(command.command_latency.value_or(sut.command_latency));
+}
+
+void check_setpoints(const record::Record& record, Report& report) {
+  std::map<std::pair<std::string, std::uint64_t>, const Interaction*> asked;
+  std::map<std::string, std::string> on_loss;
+  for (const record::SutInfo& sut : record.header.suts)
+    if (sut.setpoint_timeout > Duration(0)) on_loss[sut.uav] = sut.on_setpoint_loss;
   for (const Logged<Interaction>& entry : record.interactions)
-    if (entry.message.command)
-      asked[{entry.message.uav, entry.message.sequence}] = *entry.message.command;
+    if (has_setpoints(entry.message))
+      asked[{entry.message.uav, entry.message.sequence}] = &entry.message;
   if (asked.empty() && record.header.time_limit <= Duration(0)) return;  // Tether 0.1.0
   for (const Logged<Interaction>& entry : record.interactions)
-    if (entry.message.command.has_value() != (entry.message.kind == record::kCommand))
-      report.add(0, entry, "a {} {} a velocity", entry.message.kind,
-                 entry.message.command ? "with" : "without");
+    if (has_setpoints(entry.message) != (entry.message.kind == record::kCommand))
+      report.add(0, entry, "a {} {} a set-point", entry.message.kind,
+                 has_setpoints(entry.message) ? "with" : "without");
   for (const Logged<CommandEffect>& effect : record.commands) {
     const CommandEffect& m = effect.message;
+    if (!m.loss.empty() && m.loss != on_loss[m.uav])
+      report.add(2, effect, "the loss of the link has the effect \"{}\", not \"{}\"", m.loss,
+                 on_loss[m.uav]);
     const auto found = asked.find({m.uav, m.sequence});
-    if (found == asked.end() || found->second == m.command()) continue;
-    const auto& [vx, vy, vz, yaw_rate] = found->second;
-    report.add(
-        2, effect,
-        "({}, {}, {}) m/s and {} rad/s take effect instead of the command's ({}, {}, {}) m/s "
-        "and {} rad/s",
-        m.vx_H_m_s, m.vy_H_m_s, m.vz_H_m_s, m.yaw_rate_rad_s, vx, vy, vz, yaw_rate);
+    const bool is_own = m.loss.empty() || m.loss == "keep";
+    if (is_own && found != asked.end() && !is_asked(m, *found->second))
+      report.add(2, effect, "what takes effect is not what command {} asked for", m.sequence);
   }
 }
 
 void check_commands(const record::Record& record, const Boundaries& grid, Report& report) {
   std::map<std::string, Row> rows;
-  for (const record::SutInfo& sut : record.header.suts) rows[sut.uav].concurrent = sut.concurrent;
+  for (const record::SutInfo& sut : record.header.suts) rows[sut.uav].info = &sut;
   for (const Logged<Interaction>& entry : record.interactions) {
     Row& row = rows[entry.message.uav];
     row.last_sequence = std::max(row.last_sequence, entry.message.sequence);
@@ -167,6 +249,7 @@ void check_commands(const record::Record& record, const Boundaries& grid, Report
     std::ranges::stable_sort(row.commands, {}, sequence_of<Interaction>);
     const std::vector<Due> matched = match(row, report);
     due.insert(due.end(), matched.begin(), matched.end());
+    check_later(row, grid, finished, end_of(record), report);
     check_orphans(row, finished, end_of(record), report);
   }
   check_releases(record, due, report);

@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <tuple>
 
 // Rules 1 to 7 for each interaction alone. `check` calls one function for each aspect: times,
 // arrival, release, timestamp, what depends on the kind, and the grid error.
@@ -182,10 +183,28 @@ class InteractionCheck {
     check_immediate(entry);
     const Interaction& m = entry.message;
     if (!m.effect_at) return report_.add(0, entry, "command without the time of its effect");
-    const Wide acts = wide(m.request_at) + wide(sut.info->command_latency);
+    const Wide acts = arrival_of(m, *sut.info);
+    check_latency(entry, sut, acts);
     if (wide(*m.effect_at) != grid_.at_or_after(acts))
       report_.add(2, entry, "command due at {} is set to take effect at ST {} instead of ST {}",
                   ns(acts), ns(*m.effect_at), ns(grid_.at_or_after(acts)));
+  }
+
+  // Rule 2: a latency that is drawn is one that the model can draw. A command that would overtake
+  // the one before arrives with it.
+  void check_latency(const Entry& entry, const Sut& sut, Wide arrival) {
+    const Interaction& m = entry.message;
+    const auto& [least, most] = std::tie(sut.info->command_latency, sut.info->max_command_latency);
+    if (m.command_latency.has_value() != most.has_value())
+      return report_.add(0, entry, "command {} a latency of its own",
+                         m.command_latency ? "with" : "without");
+    Wide& last = last_arrival_.try_emplace(m.uav, arrival).first->second;
+    if (arrival < last)
+      report_.add(2, entry, "command arrives at {}, before the one before", ns(arrival));
+    const bool is_drawn = most && *m.command_latency >= least && *m.command_latency <= *most;
+    if (most && !is_drawn && (*m.command_latency < least || arrival != last))
+      report_.add(2, entry, "latency of {} cannot be drawn", ns(*m.command_latency));
+    last = arrival;
   }
 
   // Rule 5: only sleeps and sensor readings take simulated time.
@@ -212,7 +231,7 @@ class InteractionCheck {
     if (m.sampled_at && m.sample_state_at)
       error = std::max(error, wide(*m.sampled_at) - wide(*m.sample_state_at));
     if (m.effect_at) {
-      const Wide acts = wide(m.request_at) + wide(sut.info->command_latency);
+      const Wide acts = arrival_of(m, *sut.info);
       error = std::max(error, wide(*m.effect_at) - acts);
     }
     if (error != wide(m.grid_error))
@@ -225,6 +244,7 @@ class InteractionCheck {
     }
   }
 
+  std::map<std::string, Wide> last_arrival_;  // of commands, by UAV
   const record::Record& record_;
   const Boundaries& grid_;
   Report& report_;

@@ -51,12 +51,29 @@ std::vector<Sampler> make_samplers(const sim::Simulator& simulator, const RunOpt
   return samplers;
 }
 
-std::vector<Session> make_sessions(const sim::World& world, const RunOptions& options) {
+std::vector<std::optional<uav::SetpointLoss>> losses_of(const sim::Simulator& simulator,
+                                                        const RunOptions& options) {
+  std::vector<std::optional<uav::SetpointLoss>> losses;
+  for (const UavOptions& uav : options.uavs) {
+    const auto& loss = losses.emplace_back(uav.setpoint_loss);
+    if (loss && loss->action == uav::LossAction::kHover && !simulator.takes_setpoints())
+      throw Error(ErrorCode::kSetup,
+                  "on_setpoint_loss = \"hover\" needs a simulator that takes positions, and this "
+                  "one takes velocities only. Use \"brake\".");
+  }
+  return losses;
+}
+
+std::vector<Session> make_sessions(const sim::Simulator& simulator, const RunOptions& options) {
+  const sim::World& world = simulator.world();
   std::vector<Session> sessions(world.uavs.size());
   for (std::size_t i = 0; i < sessions.size(); ++i) {
     sessions[i].uav = i;
     sessions[i].uav_name = world.uavs[i].name;
     sessions[i].command_latency = options.uavs[i].command_latency;
+    sessions[i].latency_key = {options.seed,
+                               random_stream(world.uavs[i].name, "command", "latency")};
+    if (simulator.takes_setpoints()) sessions[i].limits = flight_limits(world.uavs[i].airframe);
     sessions[i].cores = options.uavs[i].cores;
     if (options.uavs[i].given_time) sessions[i].replay = options.uavs[i].given_time();
     sessions[i].recorded_image_at.resize(world.uavs[i].sensors.size());
@@ -70,10 +87,11 @@ std::vector<std::string> names_of(const sim::World& world) {
   return names;
 }
 
-uav::Catalogue catalogue_of(const sim::World& world, std::size_t index, bool has_battery) {
-  const sim::Uav& uav = world.uavs[index];
+uav::Catalogue catalogue_of(const sim::World& world, const Session& session, bool has_battery) {
+  const sim::Uav& uav = world.uavs[session.uav];
   uav::Catalogue catalogue = sim::make_catalogue(world, uav);
   if (has_battery) catalogue.battery_capacity_C = uav.energy->battery.capacity_C;
+  catalogue.limits = session.limits;
   return catalogue;
 }
 
@@ -121,8 +139,8 @@ Coordinator::Impl::Impl(sim::Simulator& simulator, record::Recorder& recorder, R
       log_(recorder),
       times_(options_, simulator.grid()),
       stepper_(simulator, times_, log_, options_.ground_truth_period,
-               make_samplers(simulator, options_)),
-      sessions_(make_sessions(world(), options_)),
+               make_samplers(simulator, options_), losses_of(simulator, options_)),
+      sessions_(make_sessions(simulator, options_)),
       radio_(options_.radio, options_.seed, names_of(world()), log_),
       time_limit_(simulator.grid().ceil(SimTime(options_.time_limit))),
       started_(host_clock_()),
@@ -176,7 +194,7 @@ void Coordinator::Impl::start() {
   const bool is_free = options_.policy == sync::SyncPolicy::kFreeRunning;
   for (const Session& session : sessions_)
     server_->send(session.peer,
-                  link::Welcome{.catalogue = catalogue_of(world(), session.uav,
+                  link::Welcome{.catalogue = catalogue_of(world(), session,
                                                           stepper_.has_battery(session.uav)),
                                 .free_running = is_free,
                                 .start = ExecTime{},

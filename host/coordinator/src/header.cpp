@@ -118,7 +118,7 @@ record::Header Coordinator::Impl::make_header() const {
         {.uav = session.uav_name,
          .sut = session.hello.sut,
          .clock = session.hello.clock,
-         .command_latency = session.command_latency,
+         .command_latency = bounds(session.command_latency).first,
          .concurrent = session.hello.concurrent,
          .cores = session.hello.clock.adds_up_cores() ? session.cores : 0,
          .max_acceleration_m_s2 = max_acceleration_m_s2(uav.airframe, world().gravity_m_s2),
@@ -131,6 +131,13 @@ record::Header Coordinator::Impl::make_header() const {
          .extent_m = extent_m(uav.body),
          .max_angular_acceleration_rad_s2 = max_angular_acceleration_rad_s2(uav.airframe),
          .energy = describe_energy(uav, world().gravity_m_s2)});
+    record::SutInfo& sut = header.suts.back();
+    if (!std::holds_alternative<uav::ConstantDelay>(session.command_latency))
+      sut.max_command_latency = bounds(session.command_latency).second;
+    if (const auto& loss = options_.uavs[session.uav].setpoint_loss) {
+      sut.setpoint_timeout = loss->timeout;
+      sut.on_setpoint_loss = name(loss->action);
+    }
     if (time_of(session).facts().shares_board) {
       header.suts.back().board = options_.boards[*options_.uavs[session.uav].board].name;
       header.suts.back().pinned_core = options_.uavs[session.uav].pinned_core;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 #include <variant>
 
 #include <tether/radio/link_budget.h>
@@ -28,6 +29,24 @@ double radius_m(const sim::Geometry& geometry) {
 }
 
 }  // namespace
+
+record::Setpoint record_of(const uav::Setpoint& setpoint) {
+  record::Setpoint d{.mask = setpoint.mask, .in_heading = setpoint.in_heading};
+  const auto copy = [](const uav::Vec3& v, double(&out)[3]) {
+    std::tie(out[0], out[1], out[2]) = std::tie(v.x, v.y, v.z);
+  };
+  copy(setpoint.p_WB_m, d.p_WB_m);
+  copy(setpoint.velocity_m_s, d.velocity_m_s);
+  copy(setpoint.acceleration_m_s2, d.acceleration_m_s2);
+  copy(setpoint.w_WB_B_rad_s, d.w_WB_B_rad_s);
+  const auto& [w, x, y, z] = setpoint.q_WB;
+  std::tie(d.q_WB[0], d.q_WB[1], d.q_WB[2], d.q_WB[3]) = std::tie(w, x, y, z);
+  d.yaw_rad = setpoint.yaw_rad;
+  d.yaw_rate_rad_s = setpoint.yaw_rate_rad_s;
+  d.thrust_N = setpoint.thrust_N;
+  d.rotor_speeds_rad_s = setpoint.rotor_speeds_rad_s;
+  return d;
+}
 
 record::RadioInfo describe(const radio::Settings& radio) {
   record::RadioInfo info{.model = "ideal",

@@ -164,11 +164,12 @@ Standing Coordinator::Impl::standing(const Session& session) const {
           .next_sequence = session.next_sequence,
           .st = st(),
           .calls_in_step = time.calls_at(st()),
-          .waiting_commands = stepper_.waiting_commands(session.uav),
+          .waiting_setpoints = stepper_.waiting_setpoints(session.uav),
           .uavs = radio_.uavs(),
           .uav = session.uav,
           .sensors = stepper_.sampler(session.uav),
           .has_battery = stepper_.has_battery(session.uav),
+          .limits = session.limits,
           .plausibility = time.plausibility(),
           .clock_cores = session.hello.clock.adds_up_cores() ? cores : 0};
 }

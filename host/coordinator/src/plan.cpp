@@ -1,8 +1,12 @@
 #include "plan.h"
 
+#include "header_facts.h"
+
 #include <algorithm>
 #include <string>
 #include <utility>
+#include <variant>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -28,12 +32,26 @@ ExecTime plan_read(std::size_t uav, record::Interaction& entry, const link::Read
 }
 
 ExecTime plan_command(const Session& session, record::Interaction& entry,
-                      const link::SetVelocity& set, Stepper& stepper) {
-  const SimTime effect = same_instant(entry.request_at) + session.command_latency;
-  entry.effect_at = stepper.command(session.uav, entry.sequence, set.command, effect);
-  const auto& [velocity, yaw_rate] = set.command;
-  entry.command = {velocity.x, velocity.y, velocity.z, yaw_rate};
-  entry.grid_error = *entry.effect_at - effect;
+                      std::vector<uav::TimedSetpoint> setpoints, Stepper& stepper) {
+  const SimTime given = same_instant(entry.request_at);
+  RandomKey key = session.latency_key;
+  key.index = entry.sequence;
+  const auto velocity = heading_velocity(setpoints.front().setpoint);
+  if (velocity && setpoints.size() == 1) {
+    const auto& [v, yaw_rate] = *velocity;
+    entry.command = {v.x, v.y, v.z, yaw_rate};
+  } else {
+    for (const auto& [after, setpoint] : setpoints) {
+      entry.setpoints.push_back(record_of(setpoint));
+      entry.setpoints.back().after = after;
+    }
+  }
+  const SimTime arrives = stepper.command({given + draw(session.command_latency, key), session.uav,
+                                           entry.sequence, std::move(setpoints)});
+  entry.effect_at = stepper.grid().ceil(arrives);
+  entry.grid_error = *entry.effect_at - arrives;
+  if (!std::holds_alternative<uav::ConstantDelay>(session.command_latency))
+    entry.command_latency = arrives - given;
   return entry.request_at;
 }
 
@@ -50,8 +68,9 @@ ExecTime plan_receive(std::size_t uav, PendingInteraction& pending,
 }  // namespace
 
 const char* kind_of(const link::Request& request) {
-  constexpr const char* kKinds[] = {"sensor", "command", "sleep",  "finish",
-                                    "send",   "receive", "battery"};
+  constexpr const char* kKinds[] = {"sensor", "command", "sleep",   "finish",
+                                    "send",   "receive", "battery", "command"};
+  static_assert(std::size(kKinds) == std::variant_size_v<decltype(request.body)>);
   return kKinds[request.body.index()];
 }
 
@@ -90,7 +109,9 @@ ExecTime plan(Session& session, PendingInteraction& pending, Stepper& stepper,
   if (const auto* read = std::get_if<link::ReadSensor>(&request.body))
     return plan_read(session.uav, entry, *read, stepper);
   if (const auto* set = std::get_if<link::SetVelocity>(&request.body))
-    return plan_command(session, entry, *set, stepper);
+    return plan_command(session, entry, {{Duration(0), to_setpoint(set->command)}}, stepper);
+  if (const auto* set = std::get_if<link::SetTrajectory>(&request.body))
+    return plan_command(session, entry, set->setpoints, stepper);
   if (const auto* sleep = std::get_if<link::Sleep>(&request.body)) {
     entry.sleep_until =
         sleep->is_relative ? entry.request_at + (sleep->until - request.issued_at) : sleep->until;

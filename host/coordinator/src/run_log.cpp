@@ -4,8 +4,11 @@
 
 #include "run_log.h"
 
+#include "header_facts.h"
+
 #include <algorithm>
 #include <limits>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 
@@ -46,15 +49,18 @@ void RunLog::interaction(SimTime st, record::Interaction entry) {
   put(st, std::move(entry));
 }
 
-void RunLog::command_effect(SimTime st, const std::string& uav, const PendingCommand& command) {
-  const auto& [velocity, yaw_rate] = command.command;
-  put(st, record::CommandEffect{.uav = uav,
-                                .sequence = command.sequence,
-                                .applied_at = st,
-                                .vx_H_m_s = velocity.x,
-                                .vy_H_m_s = velocity.y,
-                                .vz_H_m_s = velocity.z,
-                                .yaw_rate_rad_s = yaw_rate});
+void RunLog::command_effect(SimTime st, const std::string& uav, const CommandEffect& effect) {
+  record::CommandEffect message{.uav = uav, .sequence = effect.sequence, .applied_at = st};
+  if (const auto velocity = heading_velocity(effect.setpoint)) {
+    const auto& [v, yaw_rate] = *velocity;
+    std::tie(message.vx_H_m_s, message.vy_H_m_s, message.vz_H_m_s, message.yaw_rate_rad_s) =
+        std::tie(v.x, v.y, v.z, yaw_rate);
+  } else {
+    message.setpoint = record_of(effect.setpoint);
+  }
+  message.index = effect.index;
+  if (effect.loss) message.loss = name(*effect.loss);
+  put(st, std::move(message));
 }
 
 void RunLog::ground_truth(const std::string& uav, const sim::GroundTruth& truth,

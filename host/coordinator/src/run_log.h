@@ -37,7 +37,7 @@ class RunLog {
 
   void begin(record::Header header, bool repeatable);
   void interaction(SimTime st, record::Interaction entry);
-  void command_effect(SimTime st, const std::string& uav, const PendingCommand& command);
+  void command_effect(SimTime st, const std::string& uav, const CommandEffect& effect);
   /// The footer keeps the least clearance.
   void ground_truth(const std::string& uav, const sim::GroundTruth& truth,
                     const std::optional<sim::Clearance>& clearance);

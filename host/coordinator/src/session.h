@@ -7,11 +7,14 @@
 #include <string>
 #include <vector>
 
+#include <tether/base/random.h>
 #include <tether/coordinator/coordinator.h>
 #include <tether/link/messages.h>
 #include <tether/link/server.h>
 #include <tether/record/messages.h>
 #include <tether/sim/simulator.h>
+#include <tether/uav/sensor_timing.h>
+#include <tether/uav/setpoint.h>
 
 namespace tether::coordinator {
 
@@ -26,7 +29,9 @@ struct PendingInteraction {
 struct Session {
   std::size_t uav = 0;  ///< index of the UAV in the world, and of its SUT's time in Timelines
   std::string uav_name;
-  Duration command_latency{0};
+  uav::Delay command_latency;
+  RandomKey latency_key;  ///< of command 0
+  uav::FlightLimits limits{};
   int cores = 0;  ///< of the SUT's machine; 0: not known
   /// For each sensor, the sampling time of the last recorded image.
   std::vector<std::optional<SimTime>> recorded_image_at;

@@ -21,7 +21,8 @@ std::vector<record::SeenAnchor> describe(const std::vector<uav::SeenAnchor>& anc
 }  // namespace
 
 Stepper::Stepper(sim::Simulator& simulator, const Timelines& times, RunLog& log,
-                 Duration ground_truth_period, std::vector<Sampler> samplers)
+                 Duration ground_truth_period, std::vector<Sampler> samplers,
+                 std::vector<std::optional<uav::SetpointLoss>> losses)
     : simulator_(&simulator),
       times_(&times),
       log_(&log),
@@ -29,6 +30,7 @@ Stepper::Stepper(sim::Simulator& simulator, const Timelines& times, RunLog& log,
       ground_truth_period_(ground_truth_period),
       samplers_(std::move(samplers)),
       has_changed_(samplers_.size()),
+      commands_(grid_, std::move(losses)),
       has_battery_(samplers_.size()),
       loads_(samplers_.size()) {
   for (std::size_t uav = 0; uav < samplers_.size(); ++uav) {
@@ -136,9 +138,13 @@ void Stepper::close(std::size_t uav) {
 }
 
 void Stepper::apply_commands() {
-  while (const auto command = commands_.pop_due(st_)) {
-    guarded([&](sim::Simulator& s) { s.apply(command->uav, to_setpoint(command->command)); });
-    log_->command_effect(st_, simulator_->world().uavs[command->uav].name, *command);
+  while (auto effect = commands_.pop_due(st_)) {
+    if (effect->loss) {
+      const auto truth = guarded([&](sim::Simulator& s) { return s.ground_truth(effect->uav); });
+      effect->setpoint = setpoint_on_loss(*effect->loss, effect->setpoint, truth.body.p_WB);
+    }
+    guarded([&](sim::Simulator& s) { s.apply(effect->uav, effect->setpoint); });
+    log_->command_effect(st_, simulator_->world().uavs[effect->uav].name, *effect);
   }
 }
 
@@ -162,13 +168,6 @@ void Stepper::log_contacts() {
   const auto contacts = guarded([](sim::Simulator& s) { return s.take_contacts(); });
   for (const sim::Contact& contact : contacts)
     log_->contact(st_, simulator_->world().uavs[contact.uav].name, contact);
-}
-
-SimTime Stepper::command(std::size_t uav, std::uint64_t sequence,
-                         const uav::VelocityCommand& command, SimTime t) {
-  const SimTime effect_at = grid_.ceil(t);
-  commands_.push({effect_at, uav, sequence, command});
-  return effect_at;
 }
 
 std::optional<uav::Sample> Stepper::measure(std::size_t uav, record::Interaction& entry) {

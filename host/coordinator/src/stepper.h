@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include <tether/base/error.h>
@@ -30,9 +31,10 @@ struct SimulatorFailure : std::runtime_error {
 /// SimulatorFailure.
 class Stepper {
  public:
-  /// `samplers`: one per UAV of the world. The other arguments must outlive the Stepper.
+  /// `samplers`, `losses`: one per UAV of the world. The other arguments must outlive the Stepper.
   Stepper(sim::Simulator& simulator, const Timelines& times, RunLog& log,
-          Duration ground_truth_period, std::vector<Sampler> samplers);
+          Duration ground_truth_period, std::vector<Sampler> samplers,
+          std::vector<std::optional<uav::SetpointLoss>> losses);
 
   void reset(std::uint64_t seed);
   SimTime st() const { return st_; }
@@ -48,9 +50,8 @@ class Stepper {
   /// Logs the contacts that began before the present ST and are not logged yet.
   void log_contacts();
 
-  /// Queues a command for the first boundary at or after `t`; returns that boundary.
-  SimTime command(std::size_t uav, std::uint64_t sequence, const uav::VelocityCommand& command,
-                  SimTime t);
+  /// Queues a command; returns when it arrives, as CommandQueue does.
+  SimTime command(PendingCommand command) { return commands_.push(std::move(command)); }
   /// What the UAV's computer computes, for its battery: on so much of a core in that time; or on
   /// one core, from a reply until the next request. Known before ST has passed it. Without a
   /// battery, nothing happens.
@@ -67,7 +68,7 @@ class Stepper {
   /// What lies between two UAVs now. @throws SimulatorFailure if the simulator cannot tell walls.
   radio::Link link(std::size_t uav, std::size_t other);
 
-  std::size_t waiting_commands(std::size_t uav) const { return commands_.waiting(uav); }
+  std::size_t waiting_setpoints(std::size_t uav) const { return commands_.waiting(uav); }
 
   const Sampler& sampler(std::size_t uav) const { return samplers_[uav]; }
   /// As those of its Sampler.

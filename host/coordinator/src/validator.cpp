@@ -81,13 +81,23 @@ MaybeFault body_fault(const link::ReadSensor& read, const Standing& sut) {
   return std::nullopt;
 }
 
+MaybeFault room_fault(std::size_t setpoints, const Standing& sut) {
+  if (sut.waiting_setpoints + setpoints <= kMaxWaitingSetpoints) return std::nullopt;
+  return Fault{Kind::kTooMany, fmt::format("a command while {} set-points are pending; at most {} "
+                                           "may be",
+                                           sut.waiting_setpoints, kMaxWaitingSetpoints)};
+}
+
 MaybeFault body_fault(const link::SetVelocity& set, const Standing& sut) {
   if (!complaint_about(to_setpoint(set.command)).empty())
     return Fault{Kind::kBadValue, "a velocity command that is not finite or too large"};
-  if (sut.waiting_commands >= kMaxWaitingCommands)
-    return Fault{Kind::kTooMany, fmt::format("a velocity command while {} others are pending",
-                                             kMaxWaitingCommands)};
-  return std::nullopt;
+  return room_fault(1, sut);
+}
+
+MaybeFault body_fault(const link::SetTrajectory& set, const Standing& sut) {
+  if (const std::string wrong = complaint_about(set.setpoints, sut.limits); !wrong.empty())
+    return Fault{Kind::kBadValue, "a command that is invalid: " + wrong};
+  return room_fault(set.setpoints.size(), sut);
 }
 
 MaybeFault body_fault(const link::Sleep& sleep, const Standing&) {

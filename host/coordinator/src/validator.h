@@ -19,7 +19,7 @@ namespace tether::coordinator {
 /// almost no time would never end.
 inline constexpr std::size_t kMaxCallsInAStep = 10'000;
 /// Limit per UAV: a latency of one second with a command every 15 us.
-inline constexpr std::size_t kMaxWaitingCommands = 65'536;
+inline constexpr std::size_t kMaxWaitingSetpoints = 65'536;
 /// Limits on the messages by radio of a SUT: between two steps of ST, in a second of ST (to each of
 /// 250 UAVs 40 times a second), their bytes in a second (0.5 Gbit/s), and those for which its queue
 /// has no room (`RadioTraffic::flood_of`). They bound the record and what an ideal radio has in
@@ -41,7 +41,7 @@ struct Fault {
     kStamp,          ///< a time that is out of range
     kAheadOfClock,   ///< a stamp later than the host clock allows
     kNotAvailable,   ///< the UAV has no such sensor, or the run no such call
-    kBadValue,       ///< a velocity that is not finite or too large
+    kBadValue,       ///< a command that is not finite, too large, or makes no sense
     kFlood,          ///< too many messages by radio
     kImpossibleStop  ///< a stop of a serial SUT, in the past, or while held
   };
@@ -62,12 +62,13 @@ struct Standing {
   std::uint32_t received_bytes = 0;  ///< of a reply that takes long to arrive
   std::uint64_t next_sequence = 1;
   SimTime st;
-  std::size_t calls_in_step = 0;  ///< at this ST
-  std::size_t waiting_commands = 0;
+  std::size_t calls_in_step = 0;        ///< at this ST
+  std::size_t waiting_setpoints = 0;    ///< of commands that are not in effect yet
   std::span<const std::string> uavs{};  ///< all of the run; its own is `uav`
   std::size_t uav = 0;
   const Sampler& sensors;
   bool has_battery = false;
+  uav::FlightLimits limits{};
   const sync::ClockPlausibility* plausibility = nullptr;  ///< nullptr: its clock is not checked
   int clock_cores = 0;  ///< cores whose time its CPU clock adds up; 0: another clock
 };

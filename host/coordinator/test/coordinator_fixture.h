@@ -98,8 +98,9 @@ class CoordinatorTest : public testing::Test {
     recorder_ = {};
     simulator_ = std::make_unique<sim::FakeSimulator>(std::move(world));
     options_.token = "secret";
-    options_.uavs.assign(uavs,
-                         {{kCameraTiming, kImuTiming, kRangeTiming}, latency_, clock_, cores_});
+    options_.uavs.assign(
+        uavs,
+        {{kCameraTiming, kImuTiming, kRangeTiming}, uav::ConstantDelay{latency_}, clock_, cores_});
     coordinator_ = std::make_unique<Coordinator>(*simulator_, recorder_, options_,
                                                  [this] { return now_ += tick_; });
     server_ = std::make_unique<ScriptedServer>();

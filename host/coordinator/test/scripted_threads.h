@@ -15,7 +15,7 @@ namespace tether::coordinator {
 struct Act {
   Duration compute{0};
   std::variant<link::ReadSensor, link::SetVelocity, Duration /* sleep */, link::Finish,
-               link::SendMessage, link::ReceiveMessage, link::ReadBattery>
+               link::SendMessage, link::ReceiveMessage, link::ReadBattery, link::SetTrajectory>
       what;
 };
 using Script = std::vector<Act>;

@@ -114,11 +114,23 @@ TEST_F(Validator, ReadsOfTheBatteryNeedOne) {
   expect(std::nullopt, request(link::ReadBattery{}));
 }
 
-TEST_F(Validator, LimitsVelocitiesAndWaitingCommands) {
+TEST_F(Validator, LimitsVelocitiesAndWaitingSetpoints) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   expect(Kind::kBadValue, request(link::SetVelocity{{{nan, 0, 0}, 0}}));
-  sut_.waiting_commands = kMaxWaitingCommands;
+  sut_.waiting_setpoints = kMaxWaitingSetpoints;
   expect(Kind::kTooMany, request(link::SetVelocity{}));
+  sut_.waiting_setpoints = kMaxWaitingSetpoints - 1;
+  expect(std::nullopt, request(link::SetVelocity{}));
+  expect(Kind::kTooMany, request(link::SetTrajectory{{{}, {Duration(1), {}}}}));
+}
+
+TEST_F(Validator, SetpointsFitTheUav) {
+  const uav::Setpoint here{.mask = uav::kPosition, .in_heading = false};
+  expect(Kind::kBadValue, request(link::SetTrajectory{{{Duration(0), here}}}));
+  expect(std::nullopt, request(link::SetTrajectory{{{Duration(0), {}}, {Duration(5), {}}}}));
+  sut_.limits = {.rotors = 4, .max_rotor_speed_rad_s = 800, .max_thrust_N = 20};
+  expect(std::nullopt, request(link::SetTrajectory{{{Duration(0), here}}}));
+  expect(Kind::kBadValue, request(link::SetTrajectory{}));
   expect(std::nullopt);
 }
 

@@ -150,6 +150,7 @@ coordinator::RunOptions run_options(const TrialSpec& spec, const TrialInputs& in
     coordinator::UavOptions& uav = options.uavs[i];
     uav.timings = inputs.timings[i];
     uav.command_latency = spec.scenario.uavs[i].command_latency;
+    uav.setpoint_loss = spec.scenario.uavs[i].setpoint_loss;
     const scenario::Computer& own = computer_of(spec.condition, i);
     uav.clock = own.clock;
     uav.computer = own.name;

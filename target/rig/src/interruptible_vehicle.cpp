@@ -35,6 +35,9 @@ class InterruptibleVehicle : public client::Vehicle {
   Status command_velocity(const uav::VelocityCommand& command) override {
     return unless_interrupted([&] { return vehicle_->command_velocity(command); });
   }
+  Status follow(std::span<const uav::TimedSetpoint> trajectory) override {
+    return unless_interrupted([&] { return vehicle_->follow(trajectory); });
+  }
   Status sleep_for(Duration duration) override {
     return unless_interrupted([&] { return vehicle_->sleep_for(duration); });
   }

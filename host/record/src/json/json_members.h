@@ -51,7 +51,7 @@ class MemberWriter {
       object_.number(name, value);
     } else if constexpr (std::is_same_v<Value, computer::ClockKind>) {
       object_.text(name, computer::name(value));
-    } else if constexpr (std::is_array_v<Value>) {
+    } else if constexpr (std::is_array_v<Value> || std::is_same_v<Value, std::vector<double>>) {
       object_.numbers(name, value);
     } else if constexpr (Time<Value>) {
       object_.integer(name, to_ns(value));
@@ -132,6 +132,14 @@ class MemberReader {
   }
   template <std::size_t Count>
   void operator()(const char* name, double (&values)[Count]) const {
+    numbers_member(object_, name, values);
+  }
+  void operator()(const char* name, std::vector<double>& values) const {
+    constexpr std::size_t kMost = 64;
+    const Json& array = member(object_, name);
+    if (!array.is_array() || array.size() > kMost)
+      throw Damage("member", name, "is not a list of at most 64 numbers");
+    values.resize(array.size());
     numbers_member(object_, name, values);
   }
   void within(const char* name, int& value, int least, int most) const {

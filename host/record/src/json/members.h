@@ -62,6 +62,25 @@ void velocity_members(auto& io, auto& m) {
   io("yaw_rate_rad_s", m.yaw_rate_rad_s);
 }
 
+/// Those of the mask.
+void members(auto& io, Maybe<Setpoint> auto& m) {
+  io("mask", m.mask);
+  if (io.has("after_ns", m.after > Duration(0))) io("after_ns", m.after);
+  io.flag("in_heading", m.in_heading);
+  const auto field = [&](std::uint64_t bit, const char* name, auto& value) {
+    if ((m.mask & bit) != 0) io(name, value);
+  };
+  field(1, "p_WB_m", m.p_WB_m);
+  field(2, "velocity_m_s", m.velocity_m_s);
+  field(4, "acceleration_m_s2", m.acceleration_m_s2);
+  field(8, "yaw_rad", m.yaw_rad);
+  field(16, "yaw_rate_rad_s", m.yaw_rate_rad_s);
+  field(32, "q_WB", m.q_WB);
+  field(64, "w_WB_B_rad_s", m.w_WB_B_rad_s);
+  field(128, "thrust_n", m.thrust_N);
+  field(256, "rotor_speeds_rad_s", m.rotor_speeds_rad_s);
+}
+
 void members(auto& io, Maybe<Interaction> auto& m) {
   io("uav", m.uav);
   io("sequence", m.sequence);
@@ -85,6 +104,8 @@ void members(auto& io, Maybe<Interaction> auto& m) {
   io.optional("effect_at_ns", m.effect_at);
   if (io.has("command", m.command.has_value()))
     io.object("command", [&](auto& command) { velocity_members(command, io.value_of(m.command)); });
+  if (io.has("setpoints", !m.setpoints.empty())) io.list("setpoints", m.setpoints);
+  io.optional("command_latency_ns", m.command_latency);
   io.optional("sleep_until_ns", m.sleep_until);
   io.optional("receive_until_ns", m.receive_until);
   if (io.has("received", m.received.has_value()))
@@ -113,7 +134,12 @@ void members(auto& io, Maybe<CommandEffect> auto& m) {
   io("uav", m.uav);
   io("sequence", m.sequence);
   io("applied_at_ns", m.applied_at);
-  velocity_members(io, m);
+  if (io.has("setpoint", m.setpoint.has_value()))
+    io.object("setpoint", [&](auto& setpoint) { members(setpoint, io.value_of(m.setpoint)); });
+  else
+    velocity_members(io, m);
+  if (io.has("index", m.index > 0)) io("index", m.index);
+  if (io.has("loss", !m.loss.empty())) io("loss", m.loss);
 }
 
 void members(auto& io, Maybe<GroundTruth> auto& m) {
@@ -238,6 +264,11 @@ void members(auto& io, Maybe<SutInfo> auto& m) {
   io("clock", m.clock.kind);
   io("cpu_factor", m.clock.factor);
   io("command_latency_ns", m.command_latency);
+  io.optional("max_command_latency_ns", m.max_command_latency);
+  if (io.has("setpoint_timeout_ns", m.setpoint_timeout > Duration(0))) {
+    io("setpoint_timeout_ns", m.setpoint_timeout);
+    io("on_setpoint_loss", m.on_setpoint_loss);
+  }
   io.flag("concurrent", m.concurrent);
   if (io.has("cores", m.cores > 0)) io.within("cores", m.cores, 1, kMostCores);
   if (io.has("max_acceleration_m_s2", m.max_acceleration_m_s2 > 0.0))

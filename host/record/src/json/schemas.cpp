@@ -51,6 +51,29 @@ const Schema kInteractionSchema{"tether.Interaction", R"json({
       },
       "required": ["vx_H_m_s", "vy_H_m_s", "vz_H_m_s", "yaw_rate_rad_s"]
     },
+    "setpoints": {
+      "type": "array",
+      "description": "what was asked for, if it is not one velocity in the heading frame",
+      "items": {
+        "type": "object",
+        "properties": {
+        "mask": {"type": "integer", "description": "sum of: 1 position, 2 velocity, 4 acceleration, 8 yaw, 16 yaw rate, 32 attitude, 64 body rates, 128 thrust, 256 rotor speeds"},
+        "after_ns": {"type": "integer", "description": "from when the command arrives"},
+        "in_heading": {"type": "boolean", "description": "velocity and acceleration are in H, not W"},
+        "p_WB_m": {"type": "array", "items": {"type": "number"}},
+        "velocity_m_s": {"type": "array", "items": {"type": "number"}},
+        "acceleration_m_s2": {"type": "array", "items": {"type": "number"}},
+        "yaw_rad": {"type": "number"},
+        "yaw_rate_rad_s": {"type": "number"},
+        "q_WB": {"type": "array", "items": {"type": "number"}, "description": "w, x, y, z"},
+        "w_WB_B_rad_s": {"type": "array", "items": {"type": "number"}},
+        "thrust_n": {"type": "number"},
+        "rotor_speeds_rad_s": {"type": "array", "items": {"type": "number"}}
+        },
+        "required": ["mask"]
+      }
+    },
+    "command_latency_ns": {"type": "integer", "description": "until it arrived, if not constant"},
     "sleep_until_ns": {"type": "integer", "description": "ET at which the SUT asked to be woken"},
     "receive_until_ns": {"type": "integer", "description": "ET of the request + timeout"},
     "received": {
@@ -113,7 +136,7 @@ const Schema kInteractionSchema{"tether.Interaction", R"json({
 
 const Schema kCommandEffectSchema{"tether.CommandEffect", R"json({
   "title": "tether.CommandEffect",
-  "description": "A velocity command taking effect, in the heading frame H.",
+  "description": "A set-point taking effect: a velocity in the heading frame H, or any other.",
   "type": "object",
   "properties": {
     "uav": {"type": "string"},
@@ -122,10 +145,29 @@ const Schema kCommandEffectSchema{"tether.CommandEffect", R"json({
     "vx_H_m_s": {"type": "number"},
     "vy_H_m_s": {"type": "number"},
     "vz_H_m_s": {"type": "number"},
-    "yaw_rate_rad_s": {"type": "number"}
+    "yaw_rate_rad_s": {"type": "number"},
+    "setpoint": {
+      "type": "object",
+      "properties": {
+        "mask": {"type": "integer", "description": "sum of: 1 position, 2 velocity, 4 acceleration, 8 yaw, 16 yaw rate, 32 attitude, 64 body rates, 128 thrust, 256 rotor speeds"},
+        "after_ns": {"type": "integer", "description": "from when the command arrives"},
+        "in_heading": {"type": "boolean", "description": "velocity and acceleration are in H, not W"},
+        "p_WB_m": {"type": "array", "items": {"type": "number"}},
+        "velocity_m_s": {"type": "array", "items": {"type": "number"}},
+        "acceleration_m_s2": {"type": "array", "items": {"type": "number"}},
+        "yaw_rad": {"type": "number"},
+        "yaw_rate_rad_s": {"type": "number"},
+        "q_WB": {"type": "array", "items": {"type": "number"}, "description": "w, x, y, z"},
+        "w_WB_B_rad_s": {"type": "array", "items": {"type": "number"}},
+        "thrust_n": {"type": "number"},
+        "rotor_speeds_rad_s": {"type": "array", "items": {"type": "number"}}
+      },
+      "required": ["mask"]
+    },
+    "index": {"type": "integer", "description": "of the set-point in its command"},
+    "loss": {"type": "string", "description": "no command has arrived for too long: what is done"}
   },
-  "required": ["uav", "sequence", "applied_at_ns", "vx_H_m_s", "vy_H_m_s", "vz_H_m_s",
-               "yaw_rate_rad_s"]
+  "required": ["uav", "sequence", "applied_at_ns"]
 })json"};
 
 const Schema kGroundTruthSchema{"tether.GroundTruth", R"json({

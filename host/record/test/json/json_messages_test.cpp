@@ -126,6 +126,26 @@ TEST(JsonMessages, FormIsStable) {
   EXPECT_EQ(texts + "\n", golden("messages.txt"));
 }
 
+TEST(JsonMessages, SetpointsHaveTheFieldsOfTheirMask) {
+  Setpoint every{.after = Duration(7), .mask = 511, .in_heading = true, .p_WB_m = {1, 2, 3}};
+  every.q_WB[1] = 0.5;
+  every.rotor_speeds_rad_s = {4, 5, 6};
+  Interaction command = command_interaction();
+  command.command.reset();
+  command.setpoints = {every, {.mask = 128, .thrust_N = 8}};
+  command.command_latency = Duration(9);
+  CommandEffect effect = command_effect();
+  effect.setpoint = every;
+  effect.index = 3;
+  effect.loss = "hover";
+  std::string texts;
+  check_form(texts, command, kInteractionSchema);
+  check_form(texts, effect, kCommandEffectSchema);
+  EXPECT_EQ(from_json<Interaction>(json_of(command)).setpoints, command.setpoints);
+  EXPECT_EQ(from_json<CommandEffect>(json_of(effect)).setpoint, every);
+  EXPECT_NE(texts.find(R"({"mask":128,"thrust_n":8})"), std::string::npos);
+}
+
 TEST(JsonMessages, NotFiniteIsNullAndReadAsNan) {
   CommandEffect message = command_effect();
   message.vx_H_m_s = std::numeric_limits<double>::infinity();

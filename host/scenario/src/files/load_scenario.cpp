@@ -3,6 +3,7 @@
 #include "files/settings.h"
 #include "tables/read_clock.h"
 #include "tables/read_computers.h"
+#include "tables/read_delay.h"
 #include "tables/read_radio.h"
 #include "tables/read_replay.h"
 #include "tables/read_sensor_profile.h"
@@ -60,12 +61,33 @@ void read_sensors(const toml::Table& table, Scenario& scenario, UavSetup& uav) {
   }
 }
 
+void read_commands(const toml::Table& table, Scenario& scenario, UavSetup& uav) {
+  constexpr toml::Range kLatency_ms{.min = 0.0, .max = 10'000.0};
+  constexpr toml::Range kTimeout_ms{.min = 0.0, .max = 3.6e6, .above_min = true};
+  constexpr std::array<std::string_view, 4> kActions = {"keep", "hover", "brake", "land"};
+  if (table.has("command_latency") && table.has("command_latency_ms"))
+    table.fail("command_latency_ms", "and 'command_latency' exclude each other. Remove one.");
+  if (table.has("command_latency"))
+    uav.command_latency = read_delay(table, "command_latency", scenario.files);
+  else
+    uav.command_latency =
+        uav::ConstantDelay{table.duration_or("command_latency_ms", kLatency_ms, Duration{0})};
+  if (table.has("setpoint_timeout_ms")) {
+    uav.setpoint_loss.emplace();
+    uav.setpoint_loss->timeout = table.duration("setpoint_timeout_ms", kTimeout_ms);
+  }
+  if (!table.has("on_setpoint_loss")) return;
+  if (!uav.setpoint_loss)
+    table.fail("on_setpoint_loss", "needs 'setpoint_timeout_ms'. Add it, or remove this key.");
+  uav.setpoint_loss->action =
+      static_cast<uav::LossAction>(table.choice("on_setpoint_loss", kActions));
+}
+
 UavSetup read_uav(const toml::Table& table, const std::optional<Sut>& default_sut,
                   Scenario& scenario) {
   constexpr toml::Range kCoordinate_m{.min = -1e5, .max = 1e5};
   constexpr toml::Range kYaw_deg{.min = -360.0, .max = 360.0};
   constexpr toml::Range kYawSpread_deg{.min = 0.0, .max = 180.0};
-  constexpr toml::Range kLatency_ms{.min = 0.0, .max = 10'000.0};
   UavSetup uav;
   uav.placement.name = table.identifier("name");
   uav.placement.model = named_file(table, "model", ShippedKind::kModel);
@@ -74,7 +96,7 @@ UavSetup read_uav(const toml::Table& table, const std::optional<Sut>& default_su
   uav.placement.p_WB = {position_m[0], position_m[1], position_m[2]};
   uav.placement.yaw_rad = rad_from_deg(table.number_or("yaw_deg", kYaw_deg, 0.0));
   uav.yaw_spread_rad = rad_from_deg(table.number_or("yaw_spread_deg", kYawSpread_deg, 0.0));
-  uav.command_latency = table.duration_or("command_latency_ms", kLatency_ms, Duration{0});
+  read_commands(table, scenario, uav);
   uav.profile = read_profile(table, scenario);
   read_sensors(table, scenario, uav);
   if (table.has("energy")) {

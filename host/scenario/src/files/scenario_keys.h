@@ -24,9 +24,21 @@ inline constexpr std::array<std::string_view, 17> kScenarioKeys = {"name",
                                                                    "radio",
                                                                    "vary"};
 
-inline constexpr std::array<std::string_view, 12> kUavKeys = {
-    "name",    "model",   "position_m", "yaw_deg", "yaw_spread_deg", "command_latency_ms",
-    "profile", "sensors", "energy",     "sut",     "target",         "pinned_core"};
+inline constexpr std::array<std::string_view, 15> kUavKeys = {"name",
+                                                              "model",
+                                                              "position_m",
+                                                              "yaw_deg",
+                                                              "yaw_spread_deg",
+                                                              "command_latency_ms",
+                                                              "command_latency",
+                                                              "setpoint_timeout_ms",
+                                                              "on_setpoint_loss",
+                                                              "profile",
+                                                              "sensors",
+                                                              "energy",
+                                                              "sut",
+                                                              "target",
+                                                              "pinned_core"};
 
 inline constexpr std::array<std::string_view, 16> kConditionKeys = {
     "name",       "description",    "policy",           "clock",

@@ -82,23 +82,23 @@ uav::Delay read_empirical(const toml::Table& delay, std::vector<std::filesystem:
 }  // namespace
 
 // The kind decides which keys are allowed, so it is read first, with any key allowed.
-uav::Delay read_delay(const toml::Table& sensor, std::vector<std::filesystem::path>& files) {
+uav::Delay read_delay(const toml::Table& table, const std::string& key,
+                      std::vector<std::filesystem::path>& files) {
   constexpr std::array<std::string_view, 3> kKinds = {"constant", "normal", "empirical"};
-  if (!sensor.is_table("delay"))
-    sensor.fail("delay", "must be a table. Write delay = { kind = \"constant\", ms = 37 }");
-  switch (sensor.table("delay").choice("kind", kKinds)) {
+  if (!table.is_table(key))
+    table.fail(key, "must be a table. Write " + key + " = { kind = \"constant\", ms = 37 }");
+  switch (table.table(key).choice("kind", kKinds)) {
     case 0: {
-      const toml::Table delay = sensor.table("delay", {"kind", "ms"});
+      const toml::Table delay = table.table(key, {"kind", "ms"});
       return uav::ConstantDelay{delay.duration("ms", kDelay_ms)};
     }
     case 1: {
-      const toml::Table delay = sensor.table("delay", {"kind", "mean_ms", "stddev_ms"});
+      const toml::Table delay = table.table(key, {"kind", "mean_ms", "stddev_ms"});
       return uav::NormalDelay{delay.duration("mean_ms", kDelay_ms),
                               delay.duration("stddev_ms", kDelay_ms)};
     }
     default:
-      return read_empirical(sensor.table("delay", {"kind", "samples_ms", "file_ms", "file_s"}),
-                            files);
+      return read_empirical(table.table(key, {"kind", "samples_ms", "file_ms", "file_s"}), files);
   }
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include <tether/base/time.h>
@@ -9,8 +10,9 @@
 
 namespace tether::scenario {
 
-/// The key 'delay' of a sensor's table; adds sample files to `files`.
-uav::Delay read_delay(const toml::Table& sensor, std::vector<std::filesystem::path>& files);
+/// A delay, such as the key 'delay' of a sensor's table; adds sample files to `files`.
+uav::Delay read_delay(const toml::Table& table, const std::string& key,
+                      std::vector<std::filesystem::path>& files);
 
 /// Measured delays: one number per line, in units of `seconds_per_unit`; blank lines and
 /// lines that start with '#' are skipped.

@@ -50,7 +50,7 @@ uav::PeriodicTiming read_periodic(const toml::Table& sensor, const uav::Delay& d
 void read_timing(const toml::Table& sensor, std::vector<std::filesystem::path>& files,
                  SensorProfile& profile) {
   constexpr std::array<std::string_view, 2> kTimings = {"periodic", "on_demand"};
-  if (sensor.has("delay")) profile.delay = read_delay(sensor, files);
+  if (sensor.has("delay")) profile.delay = read_delay(sensor, "delay", files);
   const uav::Delay delay = profile.delay.value_or(uav::ConstantDelay{});
   if (sensor.has("timing") && sensor.choice("timing", kTimings) == 0) {
     profile.timing = read_periodic(sensor, delay);

@@ -108,6 +108,25 @@ TEST_F(LoadScenario, ReadsTheTop) {
                   scratch_.path("scenario.toml"), scratch_.path("worlds/room.sdf")));
 }
 
+TEST_F(LoadScenario, ReadsHowCommandsArriveAndWhatFollowsTheirLoss) {
+  const std::string old = "command_latency_ms = 5";
+  const std::string timeout = "setpoint_timeout_ms = 500\n";
+  const Scenario s =
+      load_with(old, timeout +
+                         "on_setpoint_loss = \"land\"\n"
+                         "command_latency = { kind = \"normal\", mean_ms = 5, stddev_ms = 2 }");
+  EXPECT_EQ(std::get<uav::NormalDelay>(s.uavs[0].command_latency).stddev, milliseconds(2));
+  EXPECT_EQ(s.uavs[0].setpoint_loss,
+            (uav::SetpointLoss{milliseconds(500), uav::LossAction::kLand}));
+  EXPECT_EQ(load_with(old, timeout).uavs[0].setpoint_loss->action, uav::LossAction::kKeep);
+  expect_refused(
+      {{old, "on_setpoint_loss = \"hover\"", 15, "on_setpoint_loss"},
+       {old, timeout + "on_setpoint_loss = \"fall\"", 16, "on_setpoint_loss"},
+       {old, "setpoint_timeout_ms = 0", 15, "setpoint_timeout_ms"},
+       {old, "command_latency = 5", 15, "command_latency"},
+       {old, old + "\ncommand_latency = { kind = \"constant\", ms = 1 }", 15, old.substr(0, 18)}});
+}
+
 TEST_F(LoadScenario, ReadsUavsWithTheirSensors) {
   const Scenario s = load(kFullScenario);
   ASSERT_EQ(s.uavs.size(), 2u);
@@ -115,7 +134,8 @@ TEST_F(LoadScenario, ReadsUavsWithTheirSensors) {
   EXPECT_EQ(s.uavs[0].placement.model, scratch_.path("models/uav.sdf"));
   EXPECT_EQ(s.uavs[0].placement.p_WB, (uav::Vec3{1.0, -2.5, 1.2}));
   EXPECT_DOUBLE_EQ(s.uavs[0].placement.yaw_rad, rad_from_deg(90));
-  EXPECT_EQ(s.uavs[0].command_latency, milliseconds(5));
+  EXPECT_EQ(mean(s.uavs[0].command_latency), milliseconds(5));
+  EXPECT_EQ(s.uavs[0].setpoint_loss, std::nullopt);
   EXPECT_EQ(s.uavs[1].placement.yaw_rad, 0.0);
   EXPECT_TRUE(s.uavs[1].sensors.empty());
   EXPECT_THAT(s.uavs[0].sensors, ElementsAre(Key("camera"), Key("imu"), Key("range")));

@@ -56,7 +56,7 @@ class InlineSamples : public testing::Test {
   uav::Delay read(const std::string& text) {
     const auto file = scratch_.write("p.toml", "[camera]\ndelay = " + text + "\n");
     const toml::Document document = toml::Document::load(file);
-    return read_delay(document.root().table("camera"), files_);
+    return read_delay(document.root().table("camera"), "delay", files_);
   }
   ScratchFolder scratch_;
   std::vector<std::filesystem::path> files_;

@@ -116,6 +116,12 @@ TEST_F(CppApi, ReadsSensors) {
 
 TEST_F(CppApi, FliesWaitsAndAnnotates) {
   EXPECT_TRUE(vehicle_.command_velocity({1, 2, 3}, 0.5));
+  api::Setpoint there{};
+  there.mask = TETHER_POSITION | TETHER_YAW;
+  there.yaw_rad = 0.25;
+  EXPECT_TRUE(vehicle_.command(there));
+  EXPECT_EQ(fake_->followed.at(0).setpoint.yaw_rad, 0.25);
+  EXPECT_EQ(vehicle_.flight_limits().max_thrust_N, 24.0);
   EXPECT_EQ(fake_->commands.at(0), (uav::VelocityCommand{{1, 2, 3}, 0.5}));
   EXPECT_TRUE(vehicle_.sleep_until(api::ExecTime(2s)));
   EXPECT_TRUE(vehicle_.sleep_for(5ms));

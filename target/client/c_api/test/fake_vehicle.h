@@ -40,6 +40,7 @@ class FakeVehicle final : public client::Vehicle {
     catalogue_.anchors = {{"blue_box", uav::AnchorShape::kBox, {0.4, 0.5, 0.6}, {0.05, 0.15, 0.85}},
                           {"ball", uav::AnchorShape::kSphere, {0.2, 0.2, 0.2}, {1.0, 0.0, 0.0}}};
     catalogue_.battery_capacity_C = 7200.0;
+    catalogue_.limits = {4, 800.0, 24.0};
     image.rgb.assign(24, 7);
     image.rgb.back() = 9;
   }
@@ -64,6 +65,10 @@ class FakeVehicle final : public client::Vehicle {
   }
   Status command_velocity(const uav::VelocityCommand& command) override {
     commands.push_back(command);
+    return status();
+  }
+  Status follow(std::span<const uav::TimedSetpoint> trajectory) override {
+    followed.insert(followed.end(), trajectory.begin(), trajectory.end());
     return status();
   }
   Status sleep_for(Duration duration) override {
@@ -104,6 +109,7 @@ class FakeVehicle final : public client::Vehicle {
   std::vector<std::pair<std::string, std::uint32_t>> queues;
   std::vector<std::pair<std::string, client::Read>> reads;
   std::vector<uav::VelocityCommand> commands;
+  std::vector<uav::TimedSetpoint> followed;
   std::vector<std::string> said;
   std::vector<std::string> others{"uav2", "uav3"};
 

@@ -78,6 +78,26 @@ LIES_AT(tether_battery_sample, current_a, 16);
 LIES_AT(tether_battery_sample, charge, 24);
 LIES_AT(tether_battery_sample, capacity_c, 32);
 
+HOLDS(setpoint, sizeof(tether_setpoint) >= 240);
+LIES_AT(tether_setpoint, after_ns, 0);
+LIES_AT(tether_setpoint, mask, 8);
+LIES_AT(tether_setpoint, in_heading, 12);
+LIES_AT(tether_setpoint, position_W_m, 16);
+LIES_AT(tether_setpoint, velocity_m_s, 40);
+LIES_AT(tether_setpoint, acceleration_m_s2, 64);
+LIES_AT(tether_setpoint, yaw_rad, 88);
+LIES_AT(tether_setpoint, yaw_rate_rad_s, 96);
+LIES_AT(tether_setpoint, q_WB, 104);
+LIES_AT(tether_setpoint, rates_B_rad_s, 136);
+LIES_AT(tether_setpoint, thrust_N, 160);
+LIES_AT(tether_setpoint, rotor_speeds_rad_s, 168);
+LIES_AT(tether_setpoint, rotors, 232);
+
+HOLDS(flight_limits, sizeof(tether_flight_limits) >= 24);
+LIES_AT(tether_flight_limits, max_rotor_speed_rad_s, 0);
+LIES_AT(tether_flight_limits, max_thrust_N, 8);
+LIES_AT(tether_flight_limits, rotors, 16);
+
 HOLDS(status, sizeof(tether_status) == 4);
 HOLDS(statuses, TETHER_OK == 0 && TETHER_INVALID == 1 && TETHER_NOTHING_YET == 2 && TETHER_REFUSED == 3 &&
                     TETHER_DISCONNECTED == 4 && TETHER_PROTOCOL == 5 && TETHER_TIMEOUT == 6 &&

@@ -83,7 +83,9 @@ std::string name_of_call(const decltype(link::Request::body)& body,
                          const uav::Catalogue& catalogue) {
   if (const auto* read = std::get_if<link::ReadSensor>(&body))
     return catalogue.sensors[read->sensor].name;
-  if (std::holds_alternative<link::SetVelocity>(body)) return "command";
+  if (std::holds_alternative<link::SetVelocity>(body) ||
+      std::holds_alternative<link::SetTrajectory>(body))
+    return "command";
   if (std::holds_alternative<link::Sleep>(body)) return "sleep";
   if (std::holds_alternative<link::SendMessage>(body)) return "send";
   if (std::holds_alternative<link::ReadBattery>(body)) return "battery";
@@ -207,6 +209,18 @@ Result<RadioMessage> InteractingVehicle::receive(Duration timeout) {
 
 Status InteractingVehicle::command_velocity(const uav::VelocityCommand& command) {
   return status_of(interact(link::SetVelocity{command}));
+}
+
+Status InteractingVehicle::follow(std::span<const uav::TimedSetpoint> trajectory) {
+  if (const std::string wrong = complaint_about(trajectory, catalogue_.limits); !wrong.empty())
+    return Failure{Failure::Kind::kInvalid, "the command is invalid: " + wrong};
+  if (trajectory.size() == 1 && trajectory[0].after == Duration(0))
+    if (const auto velocity = heading_velocity(trajectory[0].setpoint))
+      return command_velocity(*velocity);
+  link::SetTrajectory set;
+  for (const auto& [after, setpoint] : trajectory)
+    set.setpoints.push_back({after, without_ignored(setpoint)});
+  return status_of(interact(std::move(set)));
 }
 
 Status InteractingVehicle::finish(bool reached_goal, std::string_view outcome,

@@ -42,6 +42,7 @@ class InteractingVehicle : public Vehicle {
   Result<uav::Sample> read_any(std::string_view sensor, uav::SensorKind kind, Read read) final;
   Result<uav::BatterySample> read_battery() final;
   Status command_velocity(const uav::VelocityCommand& command) final;
+  Status follow(std::span<const uav::TimedSetpoint> trajectory) final;
   const std::vector<std::string>& peers() const final { return peers_; }
   Status send(std::string_view to, std::span<const std::uint8_t> bytes) final;
   Result<RadioMessage> receive(Duration timeout) final;

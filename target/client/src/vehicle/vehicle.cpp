@@ -1,6 +1,7 @@
 #include <tether/client/vehicle.h>
 
-// What vehicles without a radio, without queues, or without a battery that can be read, do.
+// What vehicles without a radio, without queues, without a battery that can be read, or that only
+// take velocities, do.
 namespace tether::client {
 namespace {
 
@@ -23,6 +24,15 @@ Status Vehicle::set_queue(std::string_view, std::uint32_t) {
 
 Result<uav::BatterySample> Vehicle::read_battery() {
   return Failure{Failure::Kind::kInvalid, "the battery of this vehicle cannot be read"};
+}
+
+Status Vehicle::follow(std::span<const uav::TimedSetpoint>) {
+  return Failure{Failure::Kind::kInvalid, "this vehicle does not take set-points"};
+}
+
+Status Vehicle::command(const uav::Setpoint& setpoint) {
+  const uav::TimedSetpoint only{Duration(0), setpoint};
+  return follow({&only, 1});
 }
 
 Result<RadioMessage> Vehicle::receive(Duration) {

@@ -139,6 +139,26 @@ TEST_F(SimulatedVehicleTest, SendsNothingForWrongArguments) {
   EXPECT_EQ(std::get<link::SetVelocity>(coordinator_->requests().at(0).body).command, command);
 }
 
+TEST_F(SimulatedVehicleTest, SetpointsAreCheckedAgainstTheCatalogue) {
+  start();
+  const uav::Setpoint here{.mask = uav::kPosition, .in_heading = false};
+  const bool any = vehicle_->catalogue().limits.rotors > 0;
+  ASSERT_FALSE(any);
+  expect_failure(vehicle_->command(here), Failure::Kind::kInvalid, "only takes velocities");
+  expect_failure(vehicle_->command({.mask = 0}), Failure::Kind::kInvalid, "mask 0");
+  expect_failure(vehicle_->follow({}), Failure::Kind::kInvalid, "no set-points");
+  EXPECT_TRUE(coordinator_->requests().empty());
+  ASSERT_TRUE(vehicle_->command({.velocity_m_s = {1, 0, 0}}).ok());
+  EXPECT_TRUE(std::holds_alternative<link::SetVelocity>(coordinator_->requests().at(0).body));
+  const std::vector<uav::TimedSetpoint> two = {{Duration(0), {.yaw_rad = 9}},
+                                               {Duration(5), {.velocity_m_s = {1, 0, 0}}}};
+  ASSERT_TRUE(vehicle_->follow(two).ok());
+  const auto sent = std::get<link::SetTrajectory>(coordinator_->requests().at(1).body).setpoints;
+  ASSERT_EQ(sent.size(), 2u);
+  EXPECT_EQ(sent[0].setpoint, uav::Setpoint{}) << "ignored fields are not sent";
+  EXPECT_EQ(sent[1], two[1]);
+}
+
 /// Rule 5: the next stamp is the last reply's plus what was computed since, to the
 /// nanosecond.
 TEST_F(SimulatedVehicleTest, StampsGrowOnlyByComputing) {

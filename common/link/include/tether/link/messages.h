@@ -94,8 +94,13 @@ struct ReadSensor {
   /// queue fills from the first such read on.
   std::uint32_t queue = 1;
 };
+/// Follow one set-point that is a velocity in the heading frame.
 struct SetVelocity {
   uav::VelocityCommand command;
+};
+/// Follow any set-points: one at once, or a trajectory.
+struct SetTrajectory {
+  std::vector<uav::TimedSetpoint> setpoints;
 };
 /// Wait until ET `until`; in free running, until that ST.
 struct Sleep {
@@ -133,7 +138,8 @@ struct Request {
   ExecTime issued_at;
   Duration previous_round_trip{0};  ///< WT on the SUT's side from issuing the previous request to
                                     ///< having its reply; 0: not measured
-  std::variant<ReadSensor, SetVelocity, Sleep, Finish, SendMessage, ReceiveMessage, ReadBattery>
+  std::variant<ReadSensor, SetVelocity, Sleep, Finish, SendMessage, ReceiveMessage, ReadBattery,
+               SetTrajectory>
       body;
   /// What was computed since the previous reply, each stage once, in the order of their beginning.
   /// Of a serial SUT that sends them, the sum is `issued_at` - the previous `resume_at`.

@@ -11,6 +11,7 @@
 #include <tether/uav/math.h>
 #include <tether/uav/sensors/navigation.h>
 #include <tether/uav/sensors/scan.h>
+#include <tether/uav/setpoint.h>
 
 /// What a SUT knows of its UAV and the world: the sensors, and the anchors "known in advance with
 /// some useful properties" (paper, Section III). Positions are not included: the SUT measures them.
@@ -92,6 +93,7 @@ struct Catalogue {
   std::vector<SensorDescription> sensors;
   std::vector<Anchor> anchors;
   double battery_capacity_C = 0.0;  ///< [A s]; 0: its battery cannot be read
+  FlightLimits limits{};            ///< of what it can be commanded
 
   /// nullptr if there is none of that name.
   const SensorDescription* find_sensor(std::string_view sensor) const;

@@ -194,6 +194,9 @@ void fields(auto& io, Is<Catalogue> auto& m) {
   io("anchors", m.anchors, wire::AtMost{kMaxCatalogueEntries},
      wire::unique_by(&Anchor::name, kTwice));
   io("battery_capacity_c", m.battery_capacity_C, wire::kNotNegative);
+  io("rotors", m.limits.rotors);
+  io("max_rotor_speed_rad_s", m.limits.max_rotor_speed_rad_s, wire::kNotNegative);
+  io("max_thrust_n", m.limits.max_thrust_N, wire::kNotNegative);
 }
 
 // --- samples ------------------------------------------------------------------------------------

@@ -18,6 +18,7 @@
 #include <tether/sim/simulator.h>
 #include <tether/sync/barrier_synchronizer.h>
 #include <tether/uav/sensor_timing.h>
+#include <tether/uav/setpoint.h>
 
 /// The part between the simulator and the SUTs (paper, Section II and Fig. 2). It keeps the
 /// sessions of the SUTs, applies the timing of sensors and the decisions of the barrier, and writes
@@ -27,7 +28,7 @@ namespace tether::coordinator {
 /// One UAV of the world and its SUT.
 struct UavOptions {
   std::vector<uav::SensorTiming> timings;  ///< one per sensor of the UAV, in the world's order
-  Duration command_latency{0};             ///< from a command's timestamp to its effect; ≥ 0
+  uav::Delay command_latency{};            ///< from a command's timestamp to its effect
   /// The clock by which the condition measures this SUT's time. A SUT with another clock is
   /// rejected. None: any clock.
   std::optional<computer::Clock> clock{};
@@ -44,6 +45,7 @@ struct UavOptions {
   std::string launcher{};  ///< words before its command, for the record
   /// The core on which it runs; then only pinned programs run there.
   std::optional<int> pinned_core{};
+  std::optional<uav::SetpointLoss> setpoint_loss{};  ///< none: it keeps the last set-point
 };
 
 /// A computer with several programs, which share its cores: a virtual one (sync::SharedCores), or

@@ -10,6 +10,7 @@
 
 #include <tether/base/time.h>
 #include <tether/computer/clock.h>
+#include <tether/record/commands.h>
 
 /// The contents of a run's record (DESIGN section 5): plain data, one struct per kind of message.
 /// All times in a record are integer nanoseconds; a message's log time is the ST at which it was
@@ -68,12 +69,6 @@ struct BatteryReading {
   friend bool operator==(const BatteryReading&, const BatteryReading&) = default;
 };
 
-/// A velocity in the heading frame H, and a yaw rate.
-struct VelocityCommand {
-  double vx_H_m_s = 0, vy_H_m_s = 0, vz_H_m_s = 0, yaw_rate_rad_s = 0;
-  friend bool operator==(const VelocityCommand&, const VelocityCommand&) = default;
-};
-
 /// One request of a SUT and its reply. Topic /interactions; log time = ST at release.
 struct Interaction {
   std::string uav;
@@ -99,8 +94,12 @@ struct Interaction {
   std::optional<std::vector<SeenAnchor>> seen_anchors{};
 
   std::optional<SimTime> effect_at;  ///< kind "command": first step boundary it acts on
-  /// Kind "command": what the SUT asked for. None in records of Tether 0.1.0.
+  /// Kind "command": what the SUT asked for; none in records of Tether 0.1.0. Either one velocity
+  /// in the heading frame, or set-points.
   std::optional<VelocityCommand> command{};
+  std::vector<Setpoint> setpoints{};
+  /// From request_at until the command arrived, before rounding; none if it is constant.
+  std::optional<Duration> command_latency{};
   std::optional<ExecTime> sleep_until;  ///< kind "sleep": requested end of the sleep
 
   // For kind "receive".
@@ -144,13 +143,17 @@ struct Stop {
   WallTime wall;  ///< host clock when the stop was reported; 0: not measured
 };
 
-/// A command takes effect: written when it is passed to the simulator. Topic /commands/<uav>; log
-/// time = ST. Velocity in the heading frame H.
+/// A set-point takes effect: written when it is passed to the simulator. Topic /commands/<uav>; log
+/// time = ST. Velocity in the heading frame H, or `setpoint`.
 struct CommandEffect {
   std::string uav;
-  std::uint64_t sequence = 0;
+  std::uint64_t sequence = 0;  ///< of the command; of a loss, of the last one
   SimTime applied_at;
   double vx_H_m_s = 0, vy_H_m_s = 0, vz_H_m_s = 0, yaw_rate_rad_s = 0;
+
+  std::optional<Setpoint> setpoint{};  ///< none: the velocity above
+  std::uint64_t index = 0;             ///< of the set-point in its command
+  std::string loss{};                  ///< the link was lost, and this is done; empty: it was not
 
   VelocityCommand command() const { return {vx_H_m_s, vy_H_m_s, vz_H_m_s, yaw_rate_rad_s}; }
 };
@@ -330,8 +333,9 @@ struct SutInfo {
   std::string uav;
   std::string sut;  ///< name and version that the SUT reported
   computer::Clock clock{};
-  Duration command_latency{0};  ///< from a command's timestamp to its effect, before rounding
-  bool concurrent = false;      ///< several threads with parallel calls
+  /// From a command's timestamp to its effect, before rounding; the least if it is drawn.
+  Duration command_latency{0};
+  bool concurrent = false;  ///< several threads with parallel calls
   /// Clock "cpu": number of cores whose CPU time can add up; 0: unknown.
   int cores = 0;
   /// The most that rotors and gravity together can accelerate the UAV; 0: unknown, as in records of
@@ -353,6 +357,9 @@ struct SutInfo {
   /// The most that the rotors can change its rate of rotation; 0: unknown.
   double max_angular_acceleration_rad_s2 = 0.0;
   std::optional<EnergyInfo> energy{};  ///< none: energy is not simulated, or Tether 0.1.0
+  std::optional<Duration> max_command_latency{};  ///< none: it is constant
+  Duration setpoint_timeout{0};                   ///< 0: there is none
+  std::string on_setpoint_loss{};                 ///< with a timeout: "keep", "hover", …
 };
 /// A computer whose cores several SUTs share. On a virtual one, while n compute, each gets min(1,
 /// cores / n) of a core; a core with pinned programs is shared by these only. On a real one, its

@@ -99,8 +99,9 @@ struct UavSetup {
   double yaw_spread_rad = 0.0;                   ///< the start yaw of a trial lies within ± this
   std::optional<Profile> profile;                ///< overrides SDF's sensors
   std::map<std::string, SensorProfile> sensors;  ///< by name; override the profile
-  Duration command_latency{0};
-  std::optional<Energy> energy{};  ///< none: energy is not simulated
+  uav::Delay command_latency{};
+  std::optional<uav::SetpointLoss> setpoint_loss{};  ///< none: it keeps the last set-point
+  std::optional<Energy> energy{};                    ///< none: energy is not simulated
   /// The [[target]] on which its program runs, in conditions without a clock or target of their
   /// own.
   std::optional<Seat> seat{};

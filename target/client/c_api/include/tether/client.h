@@ -473,6 +473,7 @@ tether_status tether_finish(tether_vehicle* vehicle, int32_t reached_goal, const
 #endif
 /// @}
 #include <tether/client_battery.h>
+#include <tether/client_commands.h>
 #include <tether/client_navigation.h>
 #include <tether/client_radio.h>
 #include <tether/client_subscribing.h>

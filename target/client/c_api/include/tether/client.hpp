@@ -312,6 +312,20 @@ class Vehicle {
     return Status::of(tether_command_velocity(get(), velocity_H_m_s.x, velocity_H_m_s.y,
                                               velocity_H_m_s.z, yaw_rate_rad_s));
   }
+  /// Follows a set-point until the next command.
+  /// @param setpoint  any level  @return as tether_follow()
+  Status command(const Setpoint& setpoint) noexcept { return follow(&setpoint, 1); }
+  /// Follows a trajectory.
+  /// @param setpoints  at times that increase  @param count  how many  @return as tether_follow()
+  Status follow(const Setpoint* setpoints, std::size_t count) noexcept {
+    return Status::of(tether_follow(get(), setpoints, count, sizeof *setpoints));
+  }
+  /// @return what the UAV can be commanded
+  FlightLimits flight_limits() const noexcept {
+    FlightLimits limits{};
+    tether_get_flight_limits(get(), &limits, sizeof limits);
+    return limits;
+  }
   /// @return the number of other UAVs
   std::size_t peer_count() const noexcept { return tether_peer_count(get()); }
   /// Another UAV by its index.

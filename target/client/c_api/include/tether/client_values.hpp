@@ -329,6 +329,8 @@ using NavSatSample = tether_navsat_sample;              ///< measurement of a re
 using MagnetometerSample = tether_magnetometer_sample;  ///< measurement of a magnetometer
 using BarometerSample = tether_barometer_sample;        ///< measurement of a barometer
 using OdometrySample = tether_odometry_sample;          ///< estimate of pose and velocity
+using Setpoint = tether_setpoint;                       ///< any command
+using FlightLimits = tether_flight_limits;              ///< what a UAV can be commanded
 
 /// When a measurement was taken, or the battery was read.
 /// @param sample  the measurement  @return ST

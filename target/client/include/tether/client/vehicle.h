@@ -75,6 +75,13 @@ class Vehicle {
 
   /// Flies with this velocity until the next command.
   virtual Status command_velocity(const uav::VelocityCommand& command) = 0;
+  /// Follows a trajectory: each set-point from its time, counted from when the command takes
+  /// effect, until that of the next one; the last one until the next command. A command ends the
+  /// trajectory before it. Fails with kInvalid for what uav::complaint_about names, with the limits
+  /// of the catalogue.
+  virtual Status follow(std::span<const uav::TimedSetpoint> trajectory);
+  /// Follows this set-point until the next command.
+  Status command(const uav::Setpoint& setpoint);
 
   /// Waits in simulation; with a concurrent vehicle only the calling thread waits. A duration or
   /// instant in the past returns at once (and is still an interaction).
