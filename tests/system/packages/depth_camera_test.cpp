@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <ranges>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -81,6 +82,8 @@ TEST_F(DepthCamera, BothProgramsFlyAlike) {
     (is_depth ? depths : labels)[logged.message.index] = &logged.message;
   }
   EXPECT_EQ(record.images.size(), depths.size());  // the colours
+  EXPECT_TRUE(std::ranges::equal(std::views::keys(depths), std::views::keys(labels)))
+      << "each pair is of one instant";
   ASSERT_GT(depths.size(), 5U);
   for (const auto& logged : record.interactions) {
     const record::Interaction& read = logged.message;
