@@ -42,6 +42,8 @@ void fly(client::Vehicle& vehicle) {
       calls.made(vehicle.read<uav::CameraSample>(sensor.name, read));
       calls.made(vehicle.read<uav::ImuSample>(sensor.name, read));
       calls.made(vehicle.read<uav::RangeSample>(sensor.name, read));
+      calls.made(vehicle.read<uav::NavSatSample>(sensor.name, read));
+      calls.made(vehicle.read<uav::ScanSample>(sensor.name, read));
     }
     calls.made(vehicle.command_velocity({}));
     calls.made(vehicle.command({.mask = uav::kPosition, .in_heading = false}));

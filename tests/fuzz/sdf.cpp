@@ -81,6 +81,14 @@ void require_sound(const uav::Sample& sample) {
             "an IMU that measures no numbers");
   } else if (const auto* range = std::get_if<uav::RangeSample>(&sample)) {
     require(!std::isnan(range->range_m), "a distance that is no number");
+  } else if (const auto* scan = std::get_if<uav::ScanSample>(&sample)) {
+    for (const float range_m : scan->ranges_m)
+      require(!std::isnan(range_m), "a distance that is no number");
+  } else if (const auto* odometry = std::get_if<uav::OdometrySample>(&sample)) {
+    require(is_finite(uav::Pose{odometry->p_WS, odometry->q_WS}) && is_finite(odometry->v_WS_m_s),
+            "an odometry that is nowhere");
+  } else if (const auto* navsat = std::get_if<uav::NavSatSample>(&sample)) {
+    require(!navsat->has_fix || std::isfinite(navsat->altitude_m), "a fix that is nowhere");
   }
 }
 

@@ -61,7 +61,7 @@ class RandomMessage {
 
   uav::SensorDescription sensor(std::size_t i) {
     uav::SensorDescription out{"s" + std::to_string(i), {vec3(), quat()}, number(), {}};
-    const std::uint32_t kind = random_.bits() % 3;
+    const std::uint32_t kind = random_.bits() % 5;
     if (kind == 0)
       out.properties = uav::CameraProperties{
           {640, 480, 1.0 + number(), 2.0, number(), number(), 0.1, 0.2, 0.3, 0.4, number()},
@@ -71,6 +71,8 @@ class RandomMessage {
           std::vector<std::string>(random_.bits() % 4, text())};
     if (kind == 1) out.properties = uav::ImuProperties{};
     if (kind == 2) out.properties = uav::RangeProperties{0.1, 0.2 + number()};
+    if (kind == 3) out.properties = uav::ScanProperties{.columns = 9, .rows = 2, .max_m = number()};
+    if (kind == 4) out.properties = uav::OdometryProperties{};
     return out;
   }
 
@@ -121,7 +123,8 @@ class RandomMessage {
   Message request() {
     Request out{1 + word() / 2, time<ExecTime>(), time<ExecTime>().time_since_epoch(), {}};
     const std::uint32_t kind = random_.bits() % 8;
-    if (kind == 0) out.body = ReadSensor{random_.bits() % 1000, coin(), coin()};
+    if (kind == 0)
+      out.body = ReadSensor{random_.bits() % 1000, coin(), coin(), 1 + random_.bits() % 4096};
     if (kind == 1) out.body = SetVelocity{{vec3(), number()}};
     if (kind == 2) out.body = Sleep{time<ExecTime>(), coin()};
     if (kind == 3) out.body = Finish{coin(), text(), coin() ? json() : ""};
@@ -146,10 +149,32 @@ class RandomMessage {
     return out;
   }
 
+  uav::NavSatSample navsat() {
+    uav::NavSatSample out;
+    out.sampled_at = time<SimTime>();
+    out.index = word();
+    out.has_fix = true;
+    out.latitude_deg = 45.0 * random_.uniform();
+    out.longitude_deg = number();
+    out.altitude_m = number();
+    out.velocity_ENU_m_s = vec3();
+    out.horizontal_accuracy_m = out.vertical_accuracy_m = out.speed_accuracy_m_s = number();
+    return out;
+  }
+
   Message reply() {
     Reply out{1 + word() / 2, time<ExecTime>(), {}};
     constexpr double kInf = std::numeric_limits<double>::infinity();
-    const std::uint32_t kind = random_.bits() % 5;
+    const std::uint32_t kind = random_.bits() % 10;
+    if (kind == 5) out.sample = navsat();
+    if (kind == 6) out.sample = uav::MagnetometerSample{time<SimTime>(), word(), vec3()};
+    if (kind == 7) out.sample = uav::BarometerSample{time<SimTime>(), word(), number(), number()};
+    if (kind == 8)
+      out.sample = uav::OdometrySample{time<SimTime>(), word(), vec3(), quat(), vec3(),
+                                       vec3(),          vec3(), vec3(), vec3()};
+    if (kind == 9)
+      out.sample = uav::ScanSample{
+          time<SimTime>(), word(), {1.5F, static_cast<float>(kInf), static_cast<float>(-kInf)}};
     if (kind == 0) out.sample = image();
     if (kind == 1) out.sample = uav::ImuSample{time<SimTime>(), word(), vec3(), vec3(), quat()};
     if (kind == 2) out.sample = uav::RangeSample{time<SimTime>(), word(), number()};
