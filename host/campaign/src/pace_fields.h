@@ -69,6 +69,7 @@ void fields(auto& io, Maybe<timing::Speed::Program> auto& m) {
   io.some("launcher", m.launcher);
   io("concurrent", m.concurrent);
   io.some("build", m.build);
+  io.some("libraries", m.libraries);
   io.some("loader", m.loader);
   io.optional("pinned_core", m.pinned_core);
   io("idle_w", m.idle_W);

@@ -120,6 +120,7 @@ TEST_F(Result, ReadsBackWithEveryOptionalPart) {
                                       .launcher = "nice",
                                       .concurrent = true,
                                       .build = "0a\nargument 1 x",
+                                      .libraries = {"libx.so 0b"},
                                       .loader = "library ld-linux.so.2",
                                       .pinned_core = 1,
                                       .idle_W = 2.0,

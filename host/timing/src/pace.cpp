@@ -114,12 +114,22 @@ Pace pace_of(const record::Record& record, const record::SutInfo& sut) {
 
 constexpr std::string_view kLibrary = "library ", kLoader = "library ld-";
 
-/// Without libraries, which differ between machines.
+/// Without libraries.
 std::string build_of(const record::SutInfo& sut) {
   std::string all = sut.build_id;
   for (const record::BuildPart& part : sut.build)
     if (!part.name.starts_with(kLibrary)) all += "\n" + part.name + " " + part.value;
   return all;
+}
+
+/// "libx.so 1f2e"
+std::vector<std::string> libraries_of(const record::SutInfo& sut) {
+  std::vector<std::string> libraries;
+  for (const record::BuildPart& part : sut.build)
+    if (part.name.starts_with(kLibrary))
+      libraries.push_back(part.name.substr(kLibrary.size()) + " " + part.value);
+  std::ranges::sort(libraries);
+  return libraries;
 }
 
 std::string loader_of(const record::SutInfo& sut) {
@@ -140,6 +150,7 @@ Speed speed_of(const record::Header& header) {
                               .launcher = sut.launcher,
                               .concurrent = sut.concurrent,
                               .build = build_of(sut),
+                              .libraries = libraries_of(sut),
                               .loader = loader_of(sut),
                               .pinned_core = sut.pinned_core,
                               .idle_W = sut.energy ? sut.energy->idle_W : 0.0,

@@ -67,12 +67,16 @@ TEST(Pace, HasTheSpeedOfAllPrograms) {
   other.clock.factor = 6.0;
   other.board = other.computer = "obc";
   other.pinned_core = 1;
+  other.build_id = "0a";
+  other.build = {{"argument 1", "x"}, {"library libb.so", "0b"}, {"library liba.so", "0c"}};
   const Speed speed = pace_of(record)->speed;
   ASSERT_EQ(speed.programs.size(), 2u);
   EXPECT_EQ(speed.programs[1], (Speed::Program{.uav = "uav2",
                                                .clock = {computer::ClockKind::kCpu, 6.0},
                                                .board = "obc",
                                                .computer = "obc",
+                                               .build = "0a\nargument 1 x",
+                                               .libraries = {"liba.so 0c", "libb.so 0b"},
                                                .pinned_core = 1}));
   EXPECT_EQ(speed.boards, record.header.boards);
   EXPECT_EQ(speed.machine, "here");

@@ -48,7 +48,8 @@ bool have_same_sensors(const Compared& a, const Compared& b) {
 
 /// Of another architecture, it must be another build.
 bool is_same_program(const Speed::Program& one, const Speed::Program& other) {
-  return one.build == other.build || one.loader != other.loader;
+  return (one.build == other.build && one.libraries == other.libraries) ||
+         one.loader != other.loader;
 }
 
 /// What starts the programs, the programs, and what their computers draw.

@@ -182,8 +182,9 @@ std::string doubts_text(const ConditionVerdict& condition) {
 }
 
 std::string undecided_text(const ConditionVerdict& condition) {
-  if (condition.mixes_builds)
-    return " The flights are of different builds of the program: fly all of them again.";
+  if (!condition.mixed_build.empty())
+    return fmt::format(" The flights are of different builds of {}: fly all of them again.",
+                       condition.mixed_build);
   if (is_within_spread(condition))
     return fmt::format(" The closest limit ({}, {}) is within the spread of the times.",
                        in_a_sentence(condition.tightest->first),

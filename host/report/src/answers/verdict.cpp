@@ -137,7 +137,7 @@ Ruling ruling_of(const ConditionVerdict& verdict, const campaign::ConditionResul
     return Ruling::kUnseen;
   const bool all = verdict.reached == verdict.flown;
   if (all && std::ranges::none_of(trials, has_limit)) return Ruling::kNothingToDecide;
-  if (is_within_spread(verdict) || verdict.mixes_builds) return Ruling::kUndecided;
+  if (is_within_spread(verdict) || !verdict.mixed_build.empty()) return Ruling::kUndecided;
   if (verdict.share->low >= kWantedSuccess) return Ruling::kFastEnough;
   if (all) return Ruling::kFastEnoughSoFar;
   const bool is_missed = verdict.share->high < kWantedSuccess || verdict.is_one_flight();
@@ -145,18 +145,24 @@ Ruling ruling_of(const ConditionVerdict& verdict, const campaign::ConditionResul
   return is_missed && verdict.throttled == 0 ? Ruling::kGoalMissed : Ruling::kUndecided;
 }
 
-/// Whether the program of a UAV was built again between these flights.
-bool mix_builds(const std::vector<const campaign::TrialResult*>& flights) {
-  std::map<std::string, std::string> build_ids;  // of each UAV, in the first flight
+/// What of a UAV's program was built again between these flights; empty: nothing.
+std::string mixed_build(const std::vector<const campaign::TrialResult*>& flights) {
+  std::map<std::string, const Speed::Program*> firsts;  // of each UAV
   for (const campaign::TrialResult* flight : flights) {
     if (!flight->pace) continue;
     for (const Speed::Program& program : flight->pace->speed.programs) {
+      const Speed::Program& first = *firsts.emplace(program.uav, &program).first->second;
       // What follows are arguments and files, which a program may write itself.
-      const std::string id = program.build.substr(0, program.build.find('\n'));
-      if (build_ids.emplace(program.uav, id).first->second != id) return true;
+      const auto id = [](const Speed::Program& of) {
+        return of.build.substr(0, of.build.find('\n'));
+      };
+      if (id(program) != id(first)) return "the program";
+      const auto [own, other] = std::ranges::mismatch(program.libraries, first.libraries);
+      if (own != program.libraries.end()) return own->substr(0, own->rfind(' '));
+      if (other != first.libraries.end()) return other->substr(0, other->rfind(' '));
     }
   }
-  return false;
+  return "";
 }
 
 }  // namespace
@@ -185,7 +191,7 @@ ConditionVerdict verdict_of(const campaign::ConditionResults& results) {
     if (trial.outcome != campaign::Outcome::kFailed) flown.push_back(&trial);
   }
   verdict.missed = missed_limits(flown);
-  verdict.mixes_builds = mix_builds(flown);
+  verdict.mixed_build = mixed_build(flown);
   const auto distinct = campaign::distinct_flights(results.trials);
   verdict.distinct = distinct.size();
   verdict.distinct_reached = static_cast<std::size_t>(std::ranges::count(

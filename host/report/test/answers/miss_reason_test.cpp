@@ -106,9 +106,13 @@ TEST_F(MissReasons, AreSpeedIfAFasterConditionReachesTheGoal) {
   program(board).launcher.clear();
   program(board).build = "1f";
   expect_unknown("another build");
+  program(board).build.clear();
+  program(board).libraries = {"liblaw.so 0b"};
+  expect_unknown("another library");
   program(board).loader = "library ld-linux-aarch64.so.1";
   EXPECT_EQ(ruling(board), Ruling::kNotFastEnough) << "the build of another architecture";
-  program(board).build = program(board).loader = "";
+  program(board).loader.clear();
+  program(board).libraries.clear();
   paces_[host]->median_s = 0.3;
   expect_unknown("not faster");
 }

@@ -391,6 +391,13 @@ TEST(Verdict, IsUndecidedIfFlightsAreOfDifferentBuilds) {
   EXPECT_EQ(verdict_of(results).first().ruling, Ruling::kUndecided);
   EXPECT_THAT(verdict_text({verdict_of(results)}, Markup::kPlain),
               HasSubstr("The flights are of different builds of the program"));
+  trials[2].pace->speed.programs[0].build = "35ed";
+  trials[2].pace->speed.programs[0].libraries = {"liblaw.so 0b"};
+  trials[0].pace->speed.programs[0].libraries = {"liblaw.so 0a"};
+  trials[1].pace = trials[0].pace;
+  EXPECT_EQ(verdict_of(results).first().ruling, Ruling::kUndecided);
+  EXPECT_THAT(verdict_text({verdict_of(results)}, Markup::kPlain),
+              HasSubstr("The flights are of different builds of liblaw.so"));
 }
 
 TEST(Verdict, HasNoAnswerIfTimePassesUnseen) {

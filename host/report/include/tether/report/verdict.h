@@ -113,7 +113,8 @@ struct ConditionVerdict {
   /// Stages that the flights computed for nothing: times are replayed, and have none of them.
   std::vector<std::string> uncharged{};
   std::vector<std::string> varied{};  ///< what the scenario varies from flight to flight
-  bool mixes_builds = false;          ///< of the program of a UAV, from flight to flight
+  /// What differs in its build from flight to flight: "the program", "liblaw.so"; empty: nothing.
+  std::string mixed_build{};
   std::optional<Pace> pace{};
   std::string unknown_pace{};        ///< why it is not known; empty: there is none to know
   std::optional<MissReason> miss{};  ///< of the three rulings on a missed goal

@@ -40,7 +40,8 @@ struct Speed {
     std::optional<record::ReplayInfo> replay{};   ///< of a replayed clock
     std::string board{}, computer{}, launcher{};  ///< as in record::SutInfo
     bool concurrent = false;
-    std::string build{};   ///< of the program and the files that it was given; empty: not known
+    std::string build{};  ///< of the program and the files that it was given; empty: not known
+    std::vector<std::string> libraries{};  ///< with their builds, in the order of their names
     std::string loader{};  ///< of its libraries, which differs between architectures
     std::optional<int> pinned_core{};
     double idle_W = 0.0, busy_core_W = 0.0;  ///< of the computer; 0: energy is not simulated
