@@ -260,7 +260,15 @@ class Judge {
     const auto in_effect = [&](SimTime time) {
       return static_cast<std::size_t>(std::ranges::upper_bound(at, time) - at.begin() - 1);
     };
-    const std::size_t first = in_effect(span.from), last = in_effect(until - clause.hold);
+    std::size_t first = in_effect(span.from);
+    const std::size_t last = in_effect(until - clause.hold);
+    const std::size_t known_from = signals_.known_from(*signal);
+    const bool is_ratio = clause.condition->quantity->name == "delivery_ratio";
+    if (known_from > last) {
+      verdict.limited_by = is_ratio ? "no message was sent until then" : "no message had arrived";
+      return;
+    }
+    if (is_ratio) first = std::max(first, known_from);
     const std::vector<double>& margins = margins_of(clause, *signal);
     const double share = clause.condition->share;
     const std::size_t place =

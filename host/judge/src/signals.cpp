@@ -93,17 +93,23 @@ std::size_t Signals::of_radio(const mission::Quantity& quantity) {
   std::size_t next = 0;
   double ended = 0.0, delivered = 0.0;
   SimTime newest{};
+  bool has_arrived_here = false;
+  std::size_t& known_from = known_from_[trace_.signals.size()];
   for (const SimTime at : trace_.at) {
     for (; next < record_.radio.size() && record_.radio[next].message.at <= at; ++next) {
       const record::RadioMessage& message = record_.radio[next].message;
       const bool has_arrived = message.outcome == record::kDelivered;
-      if (message.to == uav_ && has_arrived) newest = std::max(newest, message.sent_at);
+      if (message.to == uav_ && has_arrived) {
+        newest = std::max(newest, message.sent_at);
+        has_arrived_here = true;
+      }
       if (message.uav != uav_ || message.outcome == record::kWaiting) continue;
       ended += 1.0;
       delivered += has_arrived ? 1.0 : 0.0;
     }
     const double ratio = ended > 0.0 ? delivered / ended : 1.0;
     signal.values.push_back(is_age ? to_seconds(at - newest) : ratio);
+    if (!(is_age ? has_arrived_here : ended > 0.0)) known_from = signal.values.size();
   }
   trace_.signals.push_back(std::move(signal));
   return trace_.signals.size() - 1;

@@ -20,6 +20,11 @@ class Signals {
   /// Index in the trace; none if the record does not have it at every instant.
   std::optional<std::size_t> find(const mission::Condition& condition);
   const stl::Trace& trace() const { return trace_; }
+  /// The first instant at which the signal has any evidence; the trace's size: none.
+  std::size_t known_from(std::size_t signal) const {
+    const auto found = known_from_.find(signal);
+    return found == known_from_.end() ? 0 : found->second;
+  }
 
  private:
   std::size_t of_radio(const mission::Quantity& quantity);
@@ -29,6 +34,7 @@ class Signals {
   const record::Record& record_;
   std::vector<const record::GroundTruth*> truths_;
   stl::Trace trace_;
+  std::map<std::size_t, std::size_t> known_from_;  ///< of radio
   std::map<std::pair<std::string_view, std::string>, std::optional<std::size_t>> known_;
 };
 

@@ -72,6 +72,16 @@ class Flight {
     }
     return *this;
   }
+  /// To or from "uav2".
+  Flight& message(const std::string& from, double at_s, std::string_view outcome) {
+    record::RadioMessage message;
+    message.uav = from;
+    message.to = from == "uav1" ? "uav2" : "uav1";
+    message.sent_at = message.at = st(at_s);
+    message.outcome = outcome;
+    record_.radio.push_back({st(at_s), order_++, message});
+    return *this;
+  }
   /// Ended by the time limit.
   Flight& cut(double end_s) {
     record_.footer->st_at_end = st(end_s);

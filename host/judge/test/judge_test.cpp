@@ -228,6 +228,28 @@ TEST(Judge, AnImageThatWasReadAfterACommandIsNotItsImage) {
   EXPECT_NEAR(flight.verdict(R"(always = "data_age <= 1 s")").quantiles.at(20), 0.5, 1e-9);
 }
 
+TEST(Judge, RadioNeedsMessages) {
+  Flight flight = mission();
+  const auto expect_unknown = [&](const char* clause) {
+    const ClauseVerdict verdict = flight.verdict(clause);
+    EXPECT_FALSE(verdict.met || verdict.margin) << clause;
+    EXPECT_THAT(verdict.limited_by, testing::HasSubstr("no message")) << clause;
+  };
+  const char* const ratio = "always = \"delivery_ratio >= 95 %\"";
+  const char* const age = "always = \"information_age <= 20 s\"";
+  const char* const soon = "eventually = \"delivery_ratio >= 95 %\"\nwithin_s = 4";
+  expect_unknown(ratio);
+  expect_unknown(age);
+  flight.message("uav1", 5.0, "noise").message("uav1", 6.0, record::kDelivered);
+  expect_unknown(soon);
+  expect_unknown(age);
+  expect_unknown("during = [\"a\"]\nalways = \"delivery_ratio >= 0 %\"");
+  expect(flight, {ratio, false, -95.0, 5.0, "0 % at ST 5.000 s"});
+  expect(flight, {"eventually = \"delivery_ratio >= 50 %\"", true, 0.0, 6.0, "50 %"});
+  flight.message("uav2", 7.0, record::kDelivered);
+  expect(flight, {age, true, 13.1, 8.0, "6.9 s"});
+}
+
 TEST(Judge, NeedsGroundTruth) {
   Flight flight = mission();
   flight.record().ground_truth.clear();
