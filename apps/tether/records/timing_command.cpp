@@ -14,11 +14,12 @@
 #include <unistd.h>
 
 #include <tether/base/error.h>
-#include <tether/campaign/result.h>
+#include <tether/campaign/campaign_results.h>
 #include <tether/os/terminal.h>
 #include <tether/os/text_file.h>
 #include <tether/record/reader.h>
 #include <tether/report/timing_page.h>
+#include <tether/report/verdict.h>
 #include <tether/runner/trial_folder.h>
 #include <tether/stats/sample_statistics.h>
 #include <tether/timing/change.h>
@@ -121,6 +122,42 @@ void require_fit(const TimingOptions& options) {
     if (!file.empty()) refuse(option, "cannot be used with --against.");
 }
 
+/// The results of the flights of these records. Timing files have none.
+campaign::ConditionResults flights_of(const std::vector<fs::path>& files,
+                                      const std::string& condition) {
+  campaign::ConditionResults flights{condition, {}, 0};
+  for (const fs::path& file : files) try {
+      const bool is_run = kind_of(file) == FileKind::kRun;
+      if (is_run || !timing::is_timing_file(file))
+        flights.trials.push_back(campaign::read_result(is_run ? file : file.parent_path()));
+    } catch (const Error&) {  // a record alone
+    }
+  flights.planned = flights.trials.size();
+  return flights;
+}
+
+/// What the flights themselves doubt about their times, as a line. @throws Error(kSetup) if there
+/// is a limit, and they have no answer, which no limit can pass.
+std::string doubt_about(std::vector<fs::path> files, const std::string& condition,
+                        const TimingOptions& options) {
+  if (!options.against.empty()) files.push_back(options.against);
+  const campaign::ConditionResults flights = flights_of(files, condition);
+  if (flights.trials.empty()) return "";
+  const report::ConditionVerdict verdict = report::verdict_of(flights);
+  if (verdict.ruling <= report::Ruling::kUnseen) {
+    const report::Answer answer = report::answer_of(verdict);
+    if (options.limit_percent)
+      throw Error(ErrorCode::kSetup, {files.front().string()},
+                  "cannot be held against a limit. " + answer.lead + answer.rest)
+          .about(condition);
+    return answer.lead + answer.rest;
+  }
+  const auto* const busy = verdict.doubt(campaign::Doubt::Kind::kBusyMachine);
+  if (busy == nullptr) return "";
+  return fmt::format("The machine was busy or uneven: its times can be off by {:.0f} % or more.",
+                     100.0 * busy->largest.amount);
+}
+
 int print_change(const timing::Timing& now, const TimingOptions& options) {
   const timing::Timing before = read_any(options.against);
   timing::require_scenario(before, now.scenario, options.against);
@@ -135,7 +172,8 @@ int print_change(const timing::Timing& now, const TimingOptions& options) {
           .about(now.board);
     complain("warning: " + differs);
   }
-  const timing::Comparison comparison = timing::compare(now, before);
+  timing::Comparison comparison = timing::compare(now, before);
+  comparison.doubt = doubt_about(options.runs, now.condition, options);
   std::optional<double> limit;
   if (options.limit_percent) limit = *options.limit_percent / 100.0;
   if (!options.junit.empty())
@@ -165,6 +203,9 @@ int time_all(const TimingOptions& options) {
                     timing.program, timing.build_id.empty() ? "unknown" : timing.build_id,
                     timing.clock, timing.board, timing.recorded_at, timing::runs_text(timing),
                     timing::to_text(rows, os::text_columns(STDOUT_FILENO))));
+  if (const std::string doubt = doubt_about(options.runs, timing.condition, options);
+      !doubt.empty())
+    complain("warning: " + doubt);
   for (const std::string& warning : timing::warnings(rows)) complain("warning: " + warning);
   return 0;
 }
@@ -203,7 +244,7 @@ Command timing_command() {
   return make_command(
       "timing", "Report what each stage of a program computes, or how that changed", timing_rows,
       R"(Exit codes: 0 no stage is slower than --limit allows, or there is no limit, 1 one is, 2 wrong
-use or a bad file.
+use or a bad file, 3 a flight that is held against --limit has no answer.
 
 Examples:
   tether timing out/one/record.mcap

@@ -96,6 +96,7 @@ std::string to_text(const Comparison& comparison, const double* limit) {
     out += fmt::format("{}: new; the old timing does not have it\n", stage);
   for (const std::string& stage : comparison.removed)
     out += fmt::format("{}: missing from the new timing\n", stage);
+  if (!comparison.doubt.empty()) out += comparison.doubt + '\n';
   return out;
 }
 

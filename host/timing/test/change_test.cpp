@@ -42,5 +42,11 @@ TEST(Change, NamesStagesThatOnlyOneHas) {
   EXPECT_EQ(find(comparison, "detect")->few, 0u);
 }
 
+TEST(Change, HasTheDoubtBesideItsFigures) {
+  Comparison comparison = compare(sample_timing(), sample_timing());
+  comparison.doubt = "Busy machine.";
+  EXPECT_NE(to_text(comparison, nullptr).find("]\nBusy machine.\n"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace tether::timing

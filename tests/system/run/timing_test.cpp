@@ -117,5 +117,24 @@ TEST_F(TimingRun, ShowsASlowerStageWithoutTheBoard) {
   EXPECT_EQ(timing({folder_ / "new", "--junit", folder_ / "timing.xml"}).code, 2);
 }
 
+// A program that sleeps instead of computing is no faster.
+TEST_F(TimingRun, HoldsNoFlightWithoutAnAnswerAgainstALimit) {
+  for (const std::string out : {"old", "new"}) fly("good", "clock = \"cpu\"", out);
+  nlohmann::json result = read_result(folder_ / "new");
+  const auto doubted = [&](const char* doubt) {
+    result["this_run"]["doubts"] = {{{"kind", doubt}, {"subject", "uav1"}, {"amount", 2.5}}};
+    write_text(folder_ / "new/result.json", result.dump());
+    return timing({folder_ / "new", "--against", folder_ / "old", "--limit", "1000000", "--junit",
+                   folder_ / "timing.xml"});
+  };
+  const Output busy = doubted("busy_machine");
+  EXPECT_EQ(busy.code, 0) << busy.err;
+  EXPECT_THAT(busy.out, HasSubstr("its times can be off by 250 % or more"));
+  const Output slept = doubted("unseen_wait");
+  EXPECT_EQ(slept.code, 3);
+  EXPECT_THAT(slept.err, HasSubstr("waited 2.5 s on something that Tether does not see"));
+  EXPECT_THAT(read_text(folder_ / "timing.xml"), HasSubstr("errors=\"1\""));
+}
+
 }  // namespace
 }  // namespace tether::system_test

@@ -251,13 +251,14 @@ std::string change_junit(const timing::Timing& now, const timing::Timing& before
   for (const timing::StageChange& stage : comparison.stages) {
     const std::string line =
         timing::to_text({.stages = {stage}, .added = {}, .removed = {}}, &limit);
+    const std::string doubt = comparison.doubt.empty() ? "" : comparison.doubt + '\n';
     const bool is_beyond = stage.change > limit;
     suite.cases.push_back({.trial = "stages",
                            .name = stage.stage,
                            .kind = is_beyond ? "failure" : "",
                            .type = "stage",
                            .message = is_beyond ? line.substr(0, line.size() - 1) : "",
-                           .output = line});
+                           .output = line + doubt});
   }
   const std::string others = timing::to_text(
       {.stages = {}, .added = comparison.added, .removed = comparison.removed}, &limit);

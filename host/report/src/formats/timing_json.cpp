@@ -46,7 +46,8 @@ std::string change_json(const timing::Timing& now, const timing::Timing& before,
                {"is_beyond_limit", limit && timing::is_beyond(comparison, *limit)},
                {"stages", Json::array()},
                {"added", comparison.added},
-               {"removed", comparison.removed}};
+               {"removed", comparison.removed},
+               {"doubt", comparison.doubt}};
   for (const timing::StageChange& stage : comparison.stages)
     json["stages"].push_back({{"stage", stage.stage},
                               {"change", stage.change},

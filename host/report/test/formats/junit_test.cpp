@@ -112,13 +112,15 @@ TEST_F(Junit, AStageThatIsSlowerThanItsLimitFails) {
       .stages = {{.stage = "detect <1>", .change = 0.2, .low = 0.1, .high = 0.3},
                  {.stage = "decide", .change = 0.05, .low = 0.0, .high = 0.1}},
       .added = {"track"},
-      .removed = {}};
+      .removed = {},
+      .doubt = "Busy machine."};
   const XMLElement& suite = *suites(change_junit(now, now, change, 0.1)).FirstChildElement();
   EXPECT_STREQ(suite.Attribute("name"), "timing of face_anchor");
   EXPECT_STREQ(suite.Attribute("failures"), "1");
   EXPECT_THAT(cases_of(suite), ElementsAre("detect <1>: failure", "decide"));
   EXPECT_STREQ(suite.FirstChildElement("testcase")->FirstChildElement()->Attribute("message"),
                "detect <1> +20 % [+10, +30], beyond the limit of +10 %");
+  EXPECT_THAT(suite.FirstChildElement("system-out")->GetText(), HasSubstr("Busy machine."));
 }
 
 }  // namespace

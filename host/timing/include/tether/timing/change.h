@@ -19,6 +19,7 @@ struct Comparison {
   std::vector<StageChange> stages;   ///< that both have; the largest share of the old one first
   std::vector<std::string> added;    ///< only in the new one
   std::vector<std::string> removed;  ///< only in the old one
+  std::string doubt{};               ///< by how much the times can be off; empty: not known
 };
 
 /// Pure: draws of the bootstrap are keyed by the stage. Stages whose share of the old computing
