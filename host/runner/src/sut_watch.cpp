@@ -15,6 +15,9 @@ namespace {
 // wait for 22 and 43 ms. 1 % is what two measurements of a CPU clock differ by.
 constexpr Duration kLeastDoubt = std::chrono::milliseconds(100);
 constexpr double kDoubtfulShare = 0.01;
+// Also of a factor that makes much of it, less waiting of a program that waits for nothing is seen
+// on a busy machine.
+constexpr Duration kLeastSeenWait = std::chrono::milliseconds(50);
 // The first use of memory and of a library's pages waits for the disk, too.
 constexpr Duration kLeastDiskDoubt = std::chrono::milliseconds(200);
 constexpr double kDoubtfulDiskShare = 0.1;
@@ -56,13 +59,14 @@ std::vector<campaign::Doubt> doubts_of(const coordinator::SutReport& sut,
   const double et_s = to_seconds(sut.et.time_since_epoch());
   const double least_s = std::max(to_seconds(kLeastDoubt), kDoubtfulShare * et_s);
   const coordinator::SutLooks& looks = sut.looks;
-  // What a scaled wall clock makes of waiting is in ET, like all of it.
+  // In ET: a scaled wall clock stretches all waiting. Under a scaled CPU clock, it can be for a
+  // program that computes, and for which the modelled computer would take that much longer.
   const double waiting_s = to_seconds(looks.waiting);
-  const double stretched_s = clock.counts_waiting() ? waiting_s * clock.factor : waiting_s;
-  if (stretched_s > least_s && !has_waits)
-    doubts.push_back(
-        {clock.counts_waiting() ? Kind::kStretchedWait : Kind::kUnseenWait, sut.uav, waiting_s});
-  else if (waiting_s > to_seconds(kLeastSlightWait) && !has_waits)
+  const bool counts = clock.counts_waiting();
+  const double stretched_s = waiting_s * (counts ? clock.factor : std::max(1.0, clock.factor));
+  if (stretched_s > least_s && (counts || waiting_s > to_seconds(kLeastSeenWait)) && !has_waits)
+    doubts.push_back({counts ? Kind::kStretchedWait : Kind::kUnseenWait, sut.uav, waiting_s});
+  else if ((counts ? waiting_s : stretched_s) > to_seconds(kLeastSlightWait) && !has_waits)
     doubts.push_back({Kind::kSlightWait, sut.uav, std::min(1.0, stretched_s / et_s)});
   if (const double on_disk_s = to_seconds(looks.on_disk);
       on_disk_s > std::max(to_seconds(kLeastDiskDoubt), kDoubtfulDiskShare * et_s) && !has_waits &&
