@@ -125,7 +125,7 @@ std::vector<const campaign::TrialPlan*> missing_of(const campaign::CampaignFolde
   return plans;
 }
 
-/// Every N-th trial of the campaign, from the K-th on.
+/// All trials of the campaign.
 shards::TrialList list_of(const scenario::Campaign& campaign,
                           const std::vector<std::filesystem::path>& files) {
   shards::TrialList list{.files = shards::digests_of(files)};
@@ -226,7 +226,7 @@ Options campaign_rows(CampaignOptions& o) {
       {{{"campaign", "Name of a shipped campaign, or a file (TOML)", &o.campaign},
         {"--out FOLDER", "Folder for the trials [out/campaigns/CAMPAIGN]", &o.out},
         {"--shard K/N",
-         "Fly only part K of N: each N-th trial, from the K-th on. Other parts can be flown at the "
+         "Fly only part K of N: each N-th seed, from the K-th on. Other parts can be flown at the "
          "same time, in the same or another folder. To continue, give the same option again",
          &o.shard}},
        engine_options(o.engine),

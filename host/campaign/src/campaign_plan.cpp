@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <tether/base/error.h>
+#include <tether/base/random.h>
 #include <tether/campaign/campaign_plan.h>
 #include <tether/os/text_file.h>
 
@@ -59,6 +60,23 @@ std::vector<TrialPlan> plan_trials(const scenario::Campaign& campaign,
                          entry.profile});
       }
     }
+  }
+  return plans;
+}
+
+std::vector<const TrialPlan*> in_order_of_flight(std::vector<const TrialPlan*> plans) {
+  const auto place = [](const TrialPlan* plan) {
+    const std::uint64_t stream =
+        random_stream(plan->scenario->name, plan->condition->name, "order of flight");
+    return KeyedRandom({plan->seed, stream, 0}).bits();
+  };
+  for (auto first = plans.begin(), last = first; first != plans.end(); first = last) {
+    last = std::find_if(first, plans.end(), [&](const TrialPlan* plan) {
+      return plan->seed != (*first)->seed || plan->scenario->name != (*first)->scenario->name;
+    });
+    std::stable_sort(first, last, [&](const TrialPlan* one, const TrialPlan* other) {
+      return place(one) < place(other);
+    });
   }
   return plans;
 }

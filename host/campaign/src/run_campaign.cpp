@@ -84,7 +84,7 @@ class Run {
         options_(options),
         progress_(progress),
         wall_(options.wall ? options.wall : machine_wall),
-        batches_(make_batches({missing.begin(), missing.end()}, options.jobs)),
+        batches_(make_batches(in_order_of_flight({missing.begin(), missing.end()}), options.jobs)),
         done_before_(done_before),
         total_(done_before + missing.size()) {}
 

@@ -1,3 +1,5 @@
+#include <map>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -24,6 +26,23 @@ TEST_F(CampaignPlan, HasSeedsOutermost) {
   folders.resize(4);
   EXPECT_THAT(folders, ElementsAre("out/turn/host/seed-0001", "out/turn/target/seed-0001",
                                    "out/turn/target-no-sync/seed-0001", "out/turn/host/seed-0002"));
+}
+
+// Otherwise, what alternates from flight to flight looks like a condition.
+TEST_F(CampaignPlan, FliesTheConditionsOfASeedInAnOrderOfItsOwn) {
+  campaign_.seeds = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
+  const auto plans = plan_trials(campaign_, "out");
+  std::vector<const TrialPlan*> pointers;
+  for (const TrialPlan& plan : plans) pointers.push_back(&plan);
+  const auto flown = in_order_of_flight(pointers);
+  EXPECT_EQ(flown, in_order_of_flight(pointers));
+  EXPECT_THAT(flown, testing::UnorderedElementsAreArray(pointers));
+  std::map<const scenario::Condition*, int> firsts;
+  for (std::size_t i = 0; i < flown.size(); ++i) {
+    EXPECT_EQ(flown[i]->seed, pointers[i]->seed);
+    if (i % 3 == 0) ++firsts[flown[i]->condition];
+  }
+  EXPECT_EQ(firsts.size(), 3u);
 }
 
 TEST_F(CampaignPlan, PointsIntoTheCampaign) {

@@ -27,8 +27,9 @@ struct Flight {
 std::list<Flight> flights_of(const shards::TrialList& list, const fs::path& campaign,
                              const shards::Shard& shard, const fs::path& scratch) {
   std::list<Flight> flights;
+  const std::vector<std::size_t> seeds = shards::seed_numbers(list.trials);
   for (std::size_t i = 0; i < list.trials.size(); ++i) {
-    if (!shard.takes(i) || campaign::has_result(campaign / list.trials[i].folder)) continue;
+    if (!shard.takes(seeds[i]) || campaign::has_result(campaign / list.trials[i].folder)) continue;
     Flight& flight = flights.emplace_back();
     flight.request = parse_trial_request(list.trials[i].request);
     flight.request.folder = scratch / std::to_string(i);

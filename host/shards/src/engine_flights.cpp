@@ -145,12 +145,14 @@ class Flights {
                              os::digest_of(fmt::format("{} {} {} {}", setup_.campaign.string(),
                                                        os::utc_now(), ::getpid(), missing_.size()));
     folder_ = fs::absolute(setup_.campaign) / campaign::kShardsFolder / name;
+    const std::vector<TrialList::Trial> trials = trials_of(missing_);
+    const std::vector<std::size_t> seeds = seed_numbers(trials);
     const EngineCall call{.name = name,
                           .folder = folder_,
                           .script = folder_ / "shard.sh",
-                          .shards = std::min(setup_.shards, missing_.size()),
+                          .shards = std::min(setup_.shards, 1 + *std::ranges::max_element(seeds)),
                           .cores = cores_};
-    write_parts(call);
+    write_parts(call, trials, seeds);
     os::write_file_atomically(folder_ / "input", filled(setup_.engine.input, setup_.engine, call));
     os::ChildProcess engine({.arguments = filled(setup_.engine.command, setup_.engine, call),
                              .environment = {},
@@ -168,7 +170,15 @@ class Flights {
     look();
   }
 
-  void write_parts(const EngineCall& call) {
+  std::vector<TrialList::Trial> trials_of(const Plans& plans) const {
+    std::vector<TrialList::Trial> trials;
+    for (const TrialPlan* plan : plans)
+      trials.push_back({plan->folder.lexically_relative(setup_.campaign), setup_.request(*plan)});
+    return trials;
+  }
+
+  void write_parts(const EngineCall& call, const std::vector<TrialList::Trial>& trials,
+                   const std::vector<std::size_t>& seeds) {
     std::error_code failed;
     fs::create_directories(call.folder, failed);
     if (failed)
@@ -177,10 +187,9 @@ class Flights {
           .about(setup_.campaign.string());
     std::vector<TrialList> parts(call.shards, {.files = digests_of(setup_.files)});
     for (std::size_t i = 0; i < missing_.size(); ++i) {
-      TrialList& part = parts[i % call.shards];
+      TrialList& part = parts[seeds[i] % call.shards];
       part.measures = part.measures || !campaign::repeats(*missing_[i]->condition);
-      part.trials.push_back(
-          {missing_[i]->folder.lexically_relative(setup_.campaign), setup_.request(*missing_[i])});
+      part.trials.push_back(trials[i]);
     }
     for (std::size_t i = 0; i < parts.size(); ++i)
       os::write_file_atomically(call.folder / fmt::format("part-{}.json", i + 1),

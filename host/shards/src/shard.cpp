@@ -38,6 +38,17 @@ Shard parse_shard(const std::string& text) {
       .about("--shard");
 }
 
+// A trial's folder is SCENARIO/CONDITION/SEED.
+std::vector<std::size_t> seed_numbers(const std::vector<TrialList::Trial>& trials) {
+  std::map<fs::path, std::size_t> known;
+  std::vector<std::size_t> numbers;
+  for (const TrialList::Trial& trial : trials) {
+    const fs::path seed = trial.folder.parent_path().parent_path() / trial.folder.filename();
+    numbers.push_back(known.try_emplace(seed, known.size()).first->second);
+  }
+  return numbers;
+}
+
 std::string to_json(const TrialList& list) {
   Json json{{"files", list.files}, {"measures", list.measures}, {"trials", Json::array()}};
   for (const TrialList::Trial& trial : list.trials)

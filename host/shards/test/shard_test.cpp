@@ -28,6 +28,16 @@ TEST(Shard, TakesEachTrialOnceWithTheOthers) {
     }
 }
 
+// Otherwise, each of two machines would fly one of two conditions.
+TEST(TrialList, NumbersItsSeedsWithAllTheirConditions) {
+  EXPECT_THAT(seed_numbers({{"turn/a/seed-0001", ""},
+                            {"turn/b/seed-0001", ""},
+                            {"turn/a/seed-0002", ""},
+                            {"turn/b/seed-0002", ""},
+                            {"dock/a/seed-0001", ""}}),
+              testing::ElementsAre(0, 0, 1, 1, 2));
+}
+
 TEST(TrialList, IsTheSameAfterItsText) {
   const TrialList list{.files = {{"/a \"b\"", "1f"}, {"/c", ""}},
                        .measures = true,

@@ -51,6 +51,10 @@ struct Batch {
 /// @pre jobs ≥ 1; the scenario has a UAV.
 int parallel_trials(const TrialPlan& plan, int jobs);
 
+/// The conditions of each seed in an order of its own, drawn by key: what alternates from flight to
+/// flight must not look like a condition.
+std::vector<const TrialPlan*> in_order_of_flight(std::vector<const TrialPlan*> plans);
+
 /// The plans in the order of running: those under the barrier, then the free-running ones. Batches
 /// run one after the other.
 std::vector<Batch> make_batches(const std::vector<const TrialPlan*>& plans, int jobs);

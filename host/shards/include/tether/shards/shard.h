@@ -10,13 +10,14 @@
 /// Parts of a campaign that other processes fly, on this machine or on others (ADR 0072).
 namespace tether::shards {
 
-/// Part K of N of a list of trials: every N-th one, from the K-th on.
+/// Part K of N of a list of trials: the trials of every N-th seed, from the K-th on. All conditions
+/// of a seed are on one machine, so that no machine looks like a condition.
 struct Shard {
   std::size_t number = 1;  ///< 1 to `of`
   std::size_t of = 1;
 
-  /// @param index from 0 on.
-  bool takes(std::size_t index) const { return index % of == number - 1; }
+  /// @param seed its number, as of `seed_numbers`.
+  bool takes(std::size_t seed) const { return seed % of == number - 1; }
   friend bool operator==(const Shard&, const Shard&) = default;
 };
 /// Of "K/N". @throws Error(kUsage) about --shard for other texts.
@@ -37,6 +38,8 @@ struct TrialList {
 
   friend bool operator==(const TrialList&, const TrialList&) = default;
 };
+/// Of each trial, the number of its seed in its scenario, counted through all scenarios, from 0.
+std::vector<std::size_t> seed_numbers(const std::vector<TrialList::Trial>& trials);
 std::string to_json(const TrialList& list);
 /// The inverse. @throws Error(kBadFile) at `file` for other texts.
 TrialList parse_trial_list(std::string_view text, const std::filesystem::path& file);
