@@ -220,6 +220,19 @@ TrialResult make_result(const scenario::Scenario& scenario, const scenario::Cond
   return result;
 }
 
+std::string contradiction_in(const TrialResult& result) {
+  for (const judge::ClauseVerdict& clause : result.clauses)
+    if (clause.met && clause.margin && *clause.margin < 0.0)
+      return fmt::format("clause \"{}\" is met by {} {}", clause.name, *clause.margin, clause.unit);
+  const std::string missed = why_missed(result);
+  if (result.outcome == Outcome::kGoalReached)
+    return result.end == kEndFinished ? missed : "the end is \"" + result.end + "\"";
+  const bool has_crashed = std::ranges::any_of(
+      result.contacts, [](const UavContacts& contacts) { return contacts.hard > 0; });
+  const bool could_reach = result.end == kEndFinished && missed.empty() && !has_crashed;
+  return result.outcome == Outcome::kGoalMissed && could_reach ? "nothing is missed" : "";
+}
+
 record::EmulatorInfo emulator_of(const scenario::Condition& condition) {
   record::EmulatorInfo info;
   for (const scenario::Computer& computer : condition.computers) {

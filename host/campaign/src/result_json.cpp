@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <tether/base/error.h>
 #include <tether/base/json_depth.h>
 #include <tether/campaign/result.h>
 #include <tether/os/text_file.h>
@@ -306,7 +307,14 @@ std::string to_json(const TrialResult& result) {
 }
 
 TrialResult result_from_json(const std::string& text, const std::filesystem::path& file) {
-  return read_text<TrialResult>(text, file, kResultSchemaVersion);
+  TrialResult result = read_text<TrialResult>(text, file, kResultSchemaVersion);
+  if (const std::string why = contradiction_in(result); !why.empty())
+    throw Error(ErrorCode::kBadFile, {file.string()},
+                fmt::format("contradicts itself: the outcome is \"{}\", but {}. Was it edited? Fly "
+                            "again.",
+                            name(result.outcome), why))
+        .about("outcome");
+  return result;
 }
 
 void write_result(const std::filesystem::path& folder, const TrialResult& result) {

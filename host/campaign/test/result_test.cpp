@@ -47,6 +47,29 @@ TEST_F(Result, ReadsBackWithEverythingMissing) {
   EXPECT_EQ(failed.reason, "no port");
 }
 
+TEST_F(Result, IsRefusedIfItsOutcomeContradictsTheRest) {
+  const auto expect_refused = [&](TrialResult edited, const std::string& why) {
+    const Error error = bad_file_error([&] { (void)result_from_json(to_json(edited), "r.json"); });
+    EXPECT_EQ(error.where().file, "r.json");
+    EXPECT_THAT(error.what(), HasSubstr(why));
+  };
+  TrialResult edited = trial_;
+  edited.metrics[1].max = 5.0;
+  expect_refused(edited, "\"goal_reached\", but time_required is 9.242 s, beyond its limit of 5 s");
+  edited.outcome = Outcome::kGoalMissed;
+  EXPECT_EQ(result_from_json(to_json(edited), "r.json"), edited);
+  edited.metrics[1].value = 4.0;
+  expect_refused(edited, "\"goal_missed\", but nothing is missed");
+  edited.contacts[0].hard = 1;
+  EXPECT_EQ(result_from_json(to_json(edited), "r.json"), edited);
+  edited = trial_;
+  edited.end = std::string(kEndTimeLimit);
+  expect_refused(edited, "but the end is \"time_limit\"");
+  edited = trial_;
+  edited.clauses = {{.uav = "uav1", .name = "near", .met = true, .margin = -1.0, .unit = "m"}};
+  expect_refused(edited, "clause \"near\" is met by -1 m");
+}
+
 TEST_F(Result, KeepsEveryNanosecond) {
   for (const std::int64_t ns : {0L, 1L, 999'999'999L, 1'000'000'001L, 1'234'567'890'123'456L}) {
     trial_.sync.st_at_end = SimTime(Duration(ns));

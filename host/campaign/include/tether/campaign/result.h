@@ -302,6 +302,10 @@ TrialResult make_result(const scenario::Scenario& scenario, const scenario::Cond
 /// no metric keeps its value, nor the pace.
 void invalidate(TrialResult& result, const std::string& reason);
 
+/// Why the outcome does not follow from the rest of the result, as if it was edited by hand; empty:
+/// it does.
+std::string contradiction_in(const TrialResult& result);
+
 /// What counts the work of the condition's SUTs; without a program if nothing does.
 record::EmulatorInfo emulator_of(const scenario::Condition& condition);
 
