@@ -133,7 +133,8 @@ os::Captured SshConnection::run(std::string_view script, Duration limit, std::st
 
 std::optional<std::string> SshConnection::lost(Duration limit) {
   if (!master_->wait(limit)) return std::nullopt;
-  const std::string said = os::last_line(os::read_whole(folder_ / "master.err"));
+  std::string said = os::last_line(os::read_whole(folder_ / "master.err"));
+  if (said.ends_with('.')) said.pop_back();
   return fmt::format("the connection to {} was lost{}", scenario::to_string(address_),
                      said.empty() ? "" : ": " + said);
 }

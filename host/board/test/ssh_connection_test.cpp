@@ -45,6 +45,21 @@ TEST(SshConnection, LastsAsLongAsTheObject) {
   EXPECT_FALSE(std::filesystem::exists(folder));
 }
 
+TEST(SshConnection, SaysWithoutAFullStopWhyItWasLost) {
+  const FakeSsh ssh;
+  ssh.scratch().write("ssh", R"(for word in "$@"; do
+  case $word in ControlPath=*) : >"${word#ControlPath=}" ;; esac
+done
+until [ -e "$TMPDIR/go" ]; do sleep 0.02; done
+echo 'Closed by remote host.' >&2
+exit 255
+)");
+  SshConnection connection(FakeSsh::address());
+  ssh.scratch().write("go", "");
+  EXPECT_EQ(connection.lost(kPatience),
+            "the connection to ssh://pi@board was lost: Closed by remote host");
+}
+
 TEST(SshConnection, NamesTheBoardThatItCannotReachOrThatForwardsNoPort) {
   const FakeSsh ssh;
   const SshConnection connection(FakeSsh::address());
