@@ -11,9 +11,11 @@
 
 #include <tether/base/counted.h>
 #include <tether/base/error.h>
+#include <tether/campaign/campaign_plan.h>
 #include <tether/campaign/campaign_results.h>
 #include <tether/os/text_file.h>
 #include <tether/report/junit.h>
+#include <tether/runner/trial_folder.h>
 #include <tether/shards/collect.h>
 
 namespace tether::app {
@@ -34,6 +36,20 @@ void say_missing(const shards::Collected& collected, const std::filesystem::path
   say("To fly them, type: tether campaign CAMPAIGN --out {} --resume\n", out.string());
 }
 
+/// A result is all that a report needs, but an audit, plots and pages need the record.
+void complain_of_records(const campaign::CampaignResults& results,
+                         const std::filesystem::path& out) {
+  for (const campaign::ScenarioResults& scenario : results.scenarios)
+    for (const campaign::ConditionResults& condition : scenario.conditions)
+      for (const campaign::TrialResult& trial : condition.trials) {
+        const std::filesystem::path folder =
+            campaign::trial_folder(scenario.scenario, condition.condition, trial.seed);
+        if (trial.end != campaign::kEndSetupFailed &&
+            !std::filesystem::exists(out / folder / runner::kRecordFile))
+          complain(fmt::format("warning: {}: its record is missing", folder.string()));
+      }
+}
+
 }  // namespace
 
 int collect_campaign(const std::vector<std::filesystem::path>& folders,
@@ -43,6 +59,7 @@ int collect_campaign(const std::vector<std::filesystem::path>& folders,
   complain_of_each("left out", collected.left_out);
   complain_of_each("flown twice", collected.differing);
   const campaign::CampaignResults results = campaign::read_campaign_results(out);
+  complain_of_records(results, out);
   if (!junit.empty()) os::write_file_atomically(junit, report::to_junit(results, out));
   print_campaign_summary(results, out);
   if (!collected.missing.empty()) say_missing(collected, out);

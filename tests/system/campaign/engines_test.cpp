@@ -106,6 +106,10 @@ TEST_F(Shards, AreCollectedFromFoldersAndResumed) {
   EXPECT_EQ(results(6, all), 6);
   EXPECT_EQ(run(campaign({file, "--out", folder_ / "here"})).code, 0);
   expect_same(6, all, folder_ / "here");
+  EXPECT_THAT(whole.err, Not(HasSubstr("record is missing")));
+  std::filesystem::remove(all / "hover/host/seed-0002/record.mcap");
+  EXPECT_THAT(run(campaign({"--collect", all})).err,
+              HasSubstr("hover/host/seed-0002: its record is missing"));
 }
 
 TEST_F(Shards, AreRefusedWhereOptionsContradict) {
