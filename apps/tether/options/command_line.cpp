@@ -1,6 +1,7 @@
 #include "options/command_line.h"
 
 #include "commands/commands.h"
+#include "options/junit_option.h"
 #include "shared/command.h"
 #include "shared/complaint.h"
 #include "shared/completion.h"
@@ -71,6 +72,16 @@ std::string advice_on(const std::string& word) {
   return scenario::ShippedFiles::of_program(os::own_file()).what_is(word);
 }
 
+/// The file of --junit also of a command line that cannot be parsed; empty: there is none.
+std::string junit_in(const std::vector<std::string>& words) {
+  constexpr std::string_view kOption = "--junit", kWithValue = "--junit=";
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (words[i].starts_with(kWithValue)) return words[i].substr(kWithValue.size());
+    if (words[i] == kOption && i + 1 < words.size()) return words[i + 1];
+  }
+  return "";
+}
+
 }  // namespace
 
 int run_command_line(int argc, char** argv, std::optional<os::Interrupt>& interrupt) {
@@ -105,7 +116,13 @@ int run_command_line(int argc, char** argv, std::optional<os::Interrupt>& interr
     program.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return program.exit(e);  // --help, --version
-    complain("tether: " + complaint(program, e, advice_on));
+    const std::string why = complaint(program, e, advice_on);
+    complain("tether: " + why);
+    try {
+      (void)with_junit(junit_in({argv + 1, argv + argc}), "tether",
+                       [&]() -> int { throw Error(ErrorCode::kUsage, why); });
+    } catch (const Error&) {  // is that one, or the file cannot be written
+    }
     return exit_code(ErrorCode::kUsage);
   }
   interrupt.emplace();

@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <tether/base_testing/scratch_folder.h>
+#include <tether/os/text_file.h>
+
 namespace tether::app {
 namespace {
 
@@ -25,6 +28,18 @@ TEST(CommandLine, SuggestsTheNearestCommandOrOption) {
       {{"tether", "report", "x", "--fromat=csv"}, "'--format'"}};
   for (const auto& [words, suggested] : cases)
     EXPECT_THAT(refusal(words), testing::HasSubstr(suggested));
+}
+
+TEST(CommandLine, WritesWhatIsWrongIntoTheFileForContinuousIntegration) {
+  const ScratchFolder scratch;
+  const std::string file = scratch.path("junit.xml");
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"tether", "run", "x", "--junit", file, "--outt", "y"},
+        std::vector<std::string>{"tether", "run", "x", "--outt", "y", "--junit=" + file}}) {
+    std::filesystem::remove(file);
+    (void)refusal(words);
+    EXPECT_THAT(os::read_file(file), testing::HasSubstr("--outt"));
+  }
 }
 
 TEST(CommandLine, NamesWhatIsWrongInOneLineWithTheHelpOfItsCommand) {
