@@ -87,6 +87,8 @@ void fields(auto& io, Maybe<judge::ClauseVerdict> auto& m) {
   io("limited_by", m.limited_by);
   io.some("margins", m.margins);
   io.some("quantiles", m.quantiles);
+  io.some("quantity", m.quantity);
+  io.some("sensor", m.sensor);
   io.optional("limit", m.limit);
 }
 

@@ -6,7 +6,8 @@
 
 namespace tether::coordinator {
 
-CommandQueue::CommandQueue(StepGrid grid, std::vector<std::optional<uav::SetpointLoss>> losses)
+CommandQueue::CommandQueue(StepGrid grid,
+                           const std::vector<std::optional<uav::SetpointLoss>>& losses)
     : grid_(grid) {
   for (const auto& loss : losses) {
     flights_.push_back({.loss = loss});

@@ -36,7 +36,7 @@ struct CommandEffect {
 class CommandQueue {
  public:
   /// `losses`: of each UAV.
-  CommandQueue(StepGrid grid, std::vector<std::optional<uav::SetpointLoss>> losses);
+  CommandQueue(StepGrid grid, const std::vector<std::optional<uav::SetpointLoss>>& losses);
 
   /// Commands of a UAV arrive in the order in which they were given: one that would overtake
   /// another arrives with it. Returns when this one arrives.

@@ -168,6 +168,8 @@ class Judge {
 
   void judge_events(const Clause& clause, const Span& span, ClauseVerdict& verdict) {
     const Condition& condition = *clause.condition;
+    verdict.quantity = condition.quantity->name;
+    verdict.sensor = condition.of;
     const Events& in_span = events_in(clause, span);
     const std::vector<Event>& events = in_span.events;
     const std::vector<double>& margins = in_span.margins;

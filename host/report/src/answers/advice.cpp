@@ -138,7 +138,7 @@ std::string sentence_of(const Advice& advice, const Verdict& verdict) {
     case Kind::kFindThreshold:
       return threshold_advice(lead) + uavs_advice(lead);
     case Kind::kFlyMore:
-      if (lead.planned == 1)
+      if (lead.planned == 1 && verdict.point.empty())
         return "One flight shows little. Fly a campaign of several seeds: `tether campaign FILE`; "
                "`tether list` shows examples.";
       if (advice.flights == 0)

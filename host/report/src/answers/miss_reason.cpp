@@ -16,14 +16,18 @@
 
 // Speed is the reason of a missed goal only where the flights show it: a condition that differs in
 // speed only is faster and reaches the goal, or computing alone takes longer than a limit on the
-// program's own pace. Other comparisons and some events show that it is probably not the reason.
-// Otherwise it is not known.
+// program's reaction, which contains it. Other comparisons and some events show that it is probably
+// not the reason. Otherwise it is not known.
 namespace tether::report {
 namespace {
 
 using Evidence = MissReason::Evidence;
 
 constexpr double kSameCost = 1.1;  // of an image, from flight to flight
+/// A condition so many times faster, or that computes for so little of the camera's period, misses
+/// the goal for another reason than speed.
+constexpr double kMuchFaster = 10.0;
+constexpr double kHardlyComputes = 0.25;
 constexpr SimTime kBeforeAnyProgram{std::chrono::milliseconds(50)};
 constexpr double kEmpty = 0.01;  // share of the battery's capacity
 
@@ -46,10 +50,22 @@ bool have_same_sensors(const Compared& a, const Compared& b) {
   return a.flights.front()->profiles == b.flights.front()->profiles && simulator(a) == simulator(b);
 }
 
+/// "library ld-linux-aarch64.so.1": a loader whose name says the architecture.
+bool is_usual_loader(const std::string& loader) {
+  const std::string name = loader.substr(loader.find_last_of("/ ") + 1);
+  return name.starts_with("ld-linux") || name.starts_with("ld-musl");
+}
+
 /// Of another architecture, it must be another build.
 bool is_same_program(const Speed::Program& one, const Speed::Program& other) {
   return (one.build == other.build && one.libraries == other.libraries) ||
-         one.loader != other.loader;
+         (one.loader != other.loader && is_usual_loader(one.loader) &&
+          is_usual_loader(other.loader));
+}
+
+/// A program may choose its instructions, and more, by the emulated CPU.
+bool is_same_cpu(const record::EmulatorInfo& one, const record::EmulatorInfo& other) {
+  return one.cpu_model.empty() || other.cpu_model.empty() || one.cpu_model == other.cpu_model;
 }
 
 /// What starts the programs, the programs, and what their computers draw.
@@ -64,7 +80,7 @@ bool have_same_set_up(const Speed& a, const Speed& b) {
 bool differ_in_speed_only(const Compared& a, const Compared& b) {
   return a.verdict->uncharged == b.verdict->uncharged && a.pace() && b.pace() &&
          a.pace()->radio == b.pace()->radio && have_same_set_up(a.pace()->speed, b.pace()->speed) &&
-         have_same_sensors(a, b);
+         is_same_cpu(a.pace()->speed.emulator, b.pace()->speed.emulator) && have_same_sensors(a, b);
 }
 
 struct Costs {
@@ -88,6 +104,14 @@ bool is_faster(const Compared& other, const Compared& missed) {
     return false;
   const auto costs = costs_of(*missed.pace(), *other.pace());
   return costs && costs->own_s > kSameCost * costs->other_s;
+}
+
+/// Whether a slower computer than this one, too, would have missed the goal for another reason.
+bool is_much_faster(const Compared& other, const Compared& missed) {
+  const Costs costs = *costs_of(*missed.pace(), *other.pace());
+  const auto offered_hz = other.pace()->offered_hz;
+  return costs.own_s >= kMuchFaster * costs.other_s ||
+         (offered_hz && other.pace()->median_s * *offered_hz <= kHardlyComputes);
 }
 
 bool is_instant(const Compared& one) {
@@ -145,27 +169,31 @@ std::string known_cause(const campaign::TrialResult& flight, const std::optional
     if (energy.is_empty() && energy.charge_from < kEmpty)
       return fmt::format("the battery of {} is at {:.2g} % at the start", energy.uav,
                          100.0 * energy.charge_from);
-  if (const judge::ClauseVerdict* clause = of_forgotten_task(flight)) return clause->limited_by;
   return "";
 }
 
-/// What can be the reason, if the program depends on it; empty: there is nothing.
+/// What can be the reason, if the program depends on it; empty: there is nothing. Whether a task
+/// runs, the program decides, and may do so by the time that is left.
 std::string possible_cause(const campaign::TrialResult& flight, const std::optional<Pace>& pace) {
   for (const Warning& warning : flight.warnings)
     if (warning.consequence == Consequence::kDoubtfulStart)
       return warning.subject + " " + warning.message;
+  if (const judge::ClauseVerdict* clause = of_forgotten_task(flight)) return clause->limited_by;
   if (pace && pace->messages > 0 && pace->messages_arrived == 0)
     return fmt::format("none of {} messages arrives", pace->messages);
   return "";
 }
 
-/// A missed limit on a time that contains the computing of an image, which alone takes longer;
-/// empty: there is none.
+/// A missed limit on the reaction to an image, which contains its computing, while that alone takes
+/// longer; empty: there is none. Of one task of several, the computing is not known.
 std::string limit_below_computing(const campaign::TrialResult& flight,
                                   const std::optional<Pace>& pace) {
   if (!pace || pace->camera.empty() || pace->speed.measures_waits()) return "";
   for (const judge::ClauseVerdict& clause : flight.clauses) {
     if (clause.met || clause.quantiles.empty() || !clause.limit) continue;
+    const bool is_of_image = clause.quantity == "reaction_time" &&
+                             (clause.sensor.empty() || clause.sensor == pace->camera);
+    if (!is_of_image || flight.tasks.size() > 1) continue;
     const double unit_s = clause.unit == "ms" ? 1e-3 : 1.0;
     const double median_s = unit_s * clause.quantiles[clause.quantiles.size() / 2];
     const bool contains_computing = kSameCost * median_s >= pace->median_s;
@@ -225,7 +253,10 @@ MissReason reason_of(const Compared& missed, const std::vector<Compared>& all,
   for (const Compared& other : all)
     if (is_equally_fast_and_reaches(other, missed, comparisons))
       return {Evidence::kEquallyFastReaches, other.label};
-  if (const std::string limit = in_each(missed, limit_below_computing); !limit.empty())
+  const bool misses_faster = std::ranges::any_of(
+      faster, [](const Compared* other) { return other->verdict->is_missed(); });
+  if (const std::string limit = in_each(missed, limit_below_computing);
+      !limit.empty() && !misses_faster)
     return {Evidence::kMissesOwnPace, "", limit};
   const bool some_speed_suffices = std::ranges::any_of(all, [&](const Compared& other) {
     return differ_in_speed_only(other, missed) && is_sufficient(other.verdict->ruling);
@@ -233,7 +264,8 @@ MissReason reason_of(const Compared& missed, const std::vector<Compared>& all,
   for (const Compared* other : faster) {
     if (some_speed_suffices || !other->verdict->is_missed()) continue;
     if (is_instant(*other)) return {Evidence::kInstantMissesToo, other->label};
-    if (other->pace()->keeps_up()) return {Evidence::kFasterMissesToo, other->label};
+    if (other->pace()->keeps_up() && is_much_faster(*other, missed))
+      return {Evidence::kFasterMissesToo, other->label};
   }
   if (!faster.empty())
     return {Evidence::kFasterUndecided, faster.front()->label,

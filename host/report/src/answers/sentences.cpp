@@ -295,7 +295,7 @@ std::string cause_text(const ConditionVerdict& condition) {
     return fmt::format(" The first reason: {}.", condition.reason);
   if (condition.ruling == Ruling::kUnseen) return " " + capital(evidence_of(condition));
   if (condition.ruling == Ruling::kOtherReason) return reason_text(*condition.miss);
-  return condition.left_out.empty() ? "" : left_out_text(condition);
+  return doubts_text(condition);
 }
 
 /// Of a sweep: how many pairs of its points differ in how often they reach the goal.

@@ -11,22 +11,31 @@ namespace tether::report {
 namespace {
 
 /// What was flown with one condition at one combination of the other values, by cpu_factor.
-using ByFactor = std::map<double, Ruling>;
+using ByFactor = std::map<double, const ConditionVerdict*>;
 
 bool is_factor(const campaign::Setting& setting) {
   return setting.key == "cpu_factor" || setting.key == "condition.cpu_factor";
 }
 
+/// One flight at each factor shows that flight only, and a world without its wind less.
 std::optional<Answer> sufficient_factor(const std::string& what, const ByFactor& flown) {
-  const auto next =
-      std::ranges::find_if(flown, [](const auto& one) { return !is_sufficient(one.second); });
+  const auto next = std::ranges::find_if(
+      flown, [](const auto& one) { return !is_sufficient(one.second->ruling); });
   if (next == flown.begin()) return std::nullopt;
-  const auto [factor, ruling] = *std::prev(next);
-  return Answer{fmt::format("Up to {:g} × slower would do", factor),
-                fmt::format(": {} is {} at cpu_factor = {:g}, {}.", what, name(ruling), factor,
-                            next == flown.end()
-                                ? "the largest that was flown"
-                                : fmt::format("and {} at {:g}", name(next->second), next->first))};
+  const auto& [factor, largest] = *std::prev(next);
+  const bool is_one_flight =
+      std::all_of(flown.begin(), next, [](const auto& one) { return one.second->flown == 1; });
+  const bool is_as_written = std::all_of(flown.begin(), next, [](const auto& one) {
+    return one.second->left_out.empty() && one.second->uncharged.empty();
+  });
+  return Answer{
+      fmt::format("{} {:g} × slower would do{}",
+                  is_one_flight ? "In one flight each, up to" : "Up to", factor,
+                  is_as_written ? "" : ", but not everything is simulated as written"),
+      fmt::format(": {} is {} at cpu_factor = {:g}, {}.", what, name(largest->ruling), factor,
+                  next == flown.end()
+                      ? "the largest that was flown"
+                      : fmt::format("and {} at {:g}", name(next->second->ruling), next->first))};
 }
 
 }  // namespace
@@ -52,7 +61,7 @@ std::vector<Answer> sufficient_factors(const std::vector<Verdict>& points) {
       if (factor == point.settings.end()) return {};
       if (const auto value = number_in(factor->value))
         flown[fmt::format("“{}”{}", point.conditions[i].condition, other_settings(point))][*value] =
-            point.conditions[i].ruling;
+            &point.conditions[i];
     }
     for (const auto& [what, by_factor] : flown)
       if (auto answer = sufficient_factor(what, by_factor)) answers.push_back(std::move(*answer));

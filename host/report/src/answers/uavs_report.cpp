@@ -32,6 +32,14 @@ std::string evidence_of(const UavsReport& report) {
   return parts.empty() ? "nothing was flown" : joined_with_and(parts);
 }
 
+/// Whether it is shown that the board is too slow for that many UAVs: their program does not read
+/// all images. Else the one that was added may miss the goal for a reason of its own.
+bool is_shown(const UavsReport& report) {
+  const auto& pace = report.pace.pace;
+  return report.answer.too_many > report.question.most || !pace || pace->shares_real_board ||
+         !pace->keeps_up();
+}
+
 /// Of the computing of an image, where too many share the board. Less does not tell.
 constexpr double kWaitingThatTells = 0.1;
 
@@ -48,6 +56,9 @@ std::string lead_of(const UavsReport& report) {
   const auto& [carried, too_many, next] = report.answer;
   if (is_not_for_sharing(report))
     return fmt::format("Goal missed with {}; that they share the board is probably not the reason",
+                       uavs(too_many));
+  if (!is_shown(report))
+    return fmt::format("Goal missed with {}; whether sharing the board is the reason is not known",
                        uavs(too_many));
   const std::size_t least = report.question.least, most = report.question.most;
   if (!report.answer.is_decided() && too_many > most)
@@ -148,7 +159,7 @@ std::vector<std::string> uavs_advice(const UavsReport& report) {
   if (answer.is_decided() && answer.carried < report.question.least && report.question.least > 1)
     advice.push_back(fmt::format("Try fewer: `--between 1,{}`.", report.question.least));
   if (answer.too_many <= report.question.most) {
-    const bool is_for_sharing = !is_not_for_sharing(report);
+    const bool is_for_sharing = !is_not_for_sharing(report) && is_shown(report);
     if (!is_for_sharing)
       advice.push_back(fmt::format(
           "Look at what the added UAV does: `tether run {} --condition {} --set uavs={}`",

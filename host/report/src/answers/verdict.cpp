@@ -251,7 +251,6 @@ std::vector<Advice> advice_on(const ConditionVerdict& lead) {
         advice.push_back({Kind::kCompareMore, lead.condition});
       else
         advice.push_back({Kind::kTryFaster, lead.condition});
-      if (is_too_slow) advice.push_back({Kind::kSpeedUpStage, lead.pace->stages.front().stage});
       break;
     case Ruling::kOtherReason:
       advice.push_back({Kind::kFindReason, lead.miss->condition});

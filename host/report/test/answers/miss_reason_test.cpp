@@ -110,9 +110,17 @@ TEST_F(MissReasons, AreSpeedIfAFasterConditionReachesTheGoal) {
   program(board).libraries = {"liblaw.so 0b"};
   expect_unknown("another library");
   program(board).loader = "library ld-linux-aarch64.so.1";
+  expect_unknown("only one architecture is known");
+  program(host).loader = "library ld-linux-x86-64.so.2";
   EXPECT_EQ(ruling(board), Ruling::kNotFastEnough) << "the build of another architecture";
-  program(board).loader.clear();
+  program(board).loader = "library ld-mine.so.2";
+  expect_unknown("another library under a loader of its own");
+  program(board).loader = program(host).loader = "";
   program(board).libraries.clear();
+  paces_[board]->speed.emulator.cpu_model = "Nehalem";
+  paces_[host]->speed.emulator.cpu_model = "max";
+  expect_unknown("another emulated CPU");
+  paces_[board]->speed.emulator.cpu_model = "max";
   paces_[host]->median_s = 0.3;
   expect_unknown("not faster");
 }
@@ -152,6 +160,8 @@ TEST_F(MissReasons, AreSpeedIfComputingAloneTakesLongerThanALimit) {
                                .margin = -60.0,
                                .unit = "ms",
                                .quantiles = {190.0, 210.0, 230.0},
+                               .quantity = "reaction_time",
+                               .sensor = "camera",
                                .limit = 150.0}};
   EXPECT_EQ(ruling(board), Ruling::kNotFastEnough);
   EXPECT_THAT(verdict_text({verdict()}, Markup::kPlain),
@@ -165,6 +175,36 @@ TEST_F(MissReasons, AreSpeedIfComputingAloneTakesLongerThanALimit) {
   trials(board)[0].clauses[0].limit = 15.0;
   trials(board)[0].clauses[0].quantiles = {0.0, 20.0, 40.0};
   EXPECT_EQ(ruling(board), Ruling::kGoalMissed) << "a jitter does not contain the computing";
+}
+
+// A loop waits for its camera, another sensor has its own delay, and of several tasks one may
+// sleep.
+TEST_F(MissReasons, AreNotSpeedByALimitThatComputingIsNoPartOf) {
+  const std::size_t board = add("board", 0, 1, measured(0.2));
+  const judge::ClauseVerdict clause{.uav = "uav1",
+                                    .name = "quick",
+                                    .margin = -60.0,
+                                    .unit = "ms",
+                                    .quantiles = {190.0, 210.0, 230.0},
+                                    .quantity = "reaction_time",
+                                    .sensor = "camera",
+                                    .limit = 150.0};
+  auto& clauses = trials(board)[0].clauses;
+  clauses = {clause};
+  clauses[0].quantity = "loop_period";
+  EXPECT_EQ(ruling(board), Ruling::kGoalMissed);
+  clauses = {clause};
+  clauses[0].sensor = "range";
+  EXPECT_EQ(ruling(board), Ruling::kGoalMissed);
+  clauses = {clause};
+  trials(board)[0].tasks = {{"uav1", "look", {}, {}, "reached", ""},
+                            {"uav1", "search", {}, {}, "reached", ""}};
+  EXPECT_EQ(ruling(board), Ruling::kGoalMissed);
+  trials(board)[0].tasks.clear();
+  EXPECT_EQ(ruling(board), Ruling::kNotFastEnough);
+  program(board).clock.factor = 2.0;
+  add("host", 0, 1, measured(0.1));
+  EXPECT_EQ(ruling(board), Ruling::kGoalMissed) << "a faster condition misses it, too";
 }
 
 TEST_F(MissReasons, AreNotSpeedByAWallClockThatMeasuresWaitsToo) {
@@ -185,24 +225,19 @@ TEST_F(MissReasons, AreKnownOfWhatHasNothingToDoWithSpeed) {
     const char* text;
     void (*plant)(campaign::TrialResult&, Pace&);
   };
-  for (const Cause& cause :
-       {Cause{"uav1 hits “floor” at ST 0.000 s, before a program can act",
-              [](campaign::TrialResult&trial, Pace&) {
-                trial.contacts = {{.uav = "uav1", .count = 1, .hard = 1}};
-                trial.contacts[0].hardest =
-                    record::Contact{.uav = "uav1", .at = {}, .with = "floor"};
-              }},
-        {"the battery of uav1 is at 0.01 % at the start",
-         [](campaign::TrialResult&trial, Pace&) {
-           trial.end = campaign::kEndBatteryEmpty;
-           trial.energy = {{.uav = "uav1", .charge_from = 1e-4}};
-         }},
-        {"the task 'look' did not run", [](campaign::TrialResult&trial, Pace&) {
-           trial.end = campaign::kEndFinished;
-           trial.metrics.clear();
-           trial.clauses = {
-               {.uav = "uav1", .name = "near", .limited_by = "the task 'look' did not run"}};
-         }}}) {
+  for (const Cause& cause : {
+           Cause{"uav1 hits “floor” at ST 0.000 s, before a program can act",
+                 [](campaign::TrialResult&trial, Pace&) {
+                   trial.contacts = {{.uav = "uav1", .count = 1, .hard = 1}};
+                   trial.contacts[0].hardest =
+                       record::Contact{.uav = "uav1", .at = {}, .with = "floor"};
+                 }},
+           {"the battery of uav1 is at 0.01 % at the start",
+            [](campaign::TrialResult&trial, Pace&) {
+              trial.end = campaign::kEndBatteryEmpty;
+              trial.energy = {{.uav = "uav1", .charge_from = 1e-4}};
+            }},
+       }) {
     scenario_ = {};
     paces_.clear();
     add("board", 0, 1, measured(0.2));
@@ -214,7 +249,8 @@ TEST_F(MissReasons, AreKnownOfWhatHasNothingToDoWithSpeed) {
   }
 }
 
-// Perhaps the program needs neither the messages nor the anchor that is far away.
+// Perhaps the program needs neither the messages nor the anchor that is far away, and did not run a
+// task because it was late.
 TEST_F(MissReasons, ArePossibleOfWhatAProgramMayNotNeed) {
   add("board", 0, 1, measured(0.2));
   trials(0)[0].warnings = {
@@ -227,6 +263,15 @@ TEST_F(MissReasons, ArePossibleOfWhatAProgramMayNotNeed) {
   paces_[0]->messages = 7;
   EXPECT_THAT(verdict_text({verdict()}, Markup::kPlain),
               HasSubstr("A possible reason: none of 7 messages arrives."));
+  paces_[0]->messages = 0;
+  campaign::TrialResult& trial = trials(0)[0];
+  const auto metrics = trial.metrics;
+  trial.end = campaign::kEndFinished;
+  trial.metrics.clear();
+  trial.clauses = {{.uav = "uav1", .name = "near", .limited_by = "the task 'look' did not run"}};
+  EXPECT_THAT(verdict_text({verdict()}, Markup::kPlain),
+              HasSubstr("A possible reason: the task 'look' did not run."));
+  trial.metrics = metrics;
   add("host", 5, 5, measured(0.02));
   EXPECT_NE(ruling(0), Ruling::kOtherReason);
 }
@@ -267,6 +312,8 @@ TEST_F(MissReasons, AreProbablyNotSpeedIfAFasterProgramThatReadsEveryImageMisses
   EXPECT_EQ(ruling(host), Ruling::kGoalMissed);
   paces_[host]->read_hz = 9.0;
   EXPECT_EQ(ruling(board), Ruling::kGoalMissed) << "both may be too slow";
+  paces_[host] = measured(0.03);
+  EXPECT_EQ(ruling(board), Ruling::kGoalMissed) << "a still faster one may reach it";
 }
 
 TEST_F(MissReasons, ExcludeTheComputerIfComputingTakesNoTime) {

@@ -88,6 +88,17 @@ TEST(UavsReport, DoesNotBlameTheBoardIfHardlyAProgramWaitsForCores) {
   EXPECT_THAT(uavs_answers(report).front().lead, StartsWith("Goal missed")) << "cores of their own";
   report.pace.pace->shares_real_board = true;
   EXPECT_THAT(uavs_answers(report).front().lead, StartsWith("This board carries"));
+  report.pace.pace->shares_real_board = false;
+  report.pace.pace->shared_board = "obc";
+  report.pace.pace->waiting = 0.5;
+  report.pace.pace->read_hz = 30.0;
+  report.pace.pace->offered_hz = 30.0;
+  EXPECT_EQ(uavs_answers(report).front().lead,
+            "Goal missed with 2 UAVs; whether sharing the board is the reason is not known");
+  EXPECT_THAT(uavs_advice(report)[0], StartsWith("Look at what the added UAV does"));
+  report.pace.pace->read_hz = 9.0;
+  EXPECT_THAT(uavs_answers(report).front().lead, StartsWith("This board carries"))
+      << "the program reads not all images";
 }
 
 TEST(UavsReport, HasTheSameAnswerAsJsonPageAndJunit) {

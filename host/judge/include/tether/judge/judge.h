@@ -52,6 +52,8 @@ struct ClauseVerdict {
   /// Of a condition on commands or reads, such as `reaction_time`: the quantiles of its values at
   /// 0, 5, … 100 %, in `unit`. Empty for other clauses, and if there were none.
   std::vector<double> quantiles{};
+  /// Of such a condition: the quantity ("reaction_time") and the sensor, if it names one.
+  std::string quantity{}, sensor{};
   /// The bound of the condition, or the time from `from` to the deadline, in `unit`.
   std::optional<double> limit{};
 
