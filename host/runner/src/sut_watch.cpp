@@ -65,7 +65,8 @@ std::vector<campaign::Doubt> doubts_of(const coordinator::SutReport& sut,
   const bool counts = clock.counts_waiting();
   const double stretched_s = waiting_s * (counts ? clock.factor : std::max(1.0, clock.factor));
   if (stretched_s > least_s && (counts || waiting_s > to_seconds(kLeastSeenWait)) && !has_waits)
-    doubts.push_back({counts ? Kind::kStretchedWait : Kind::kUnseenWait, sut.uav, waiting_s});
+    doubts.push_back(counts ? campaign::Doubt{Kind::kStretchedWait, sut.uav, waiting_s}
+                            : campaign::Doubt{Kind::kUnseenWait, sut.uav, stretched_s});
   else if ((counts ? waiting_s : stretched_s) > to_seconds(kLeastSlightWait) && !has_waits)
     doubts.push_back({Kind::kSlightWait, sut.uav, std::min(1.0, stretched_s / et_s)});
   if (const double on_disk_s = to_seconds(looks.on_disk);

@@ -37,7 +37,7 @@ TEST(SutWatch, DoubtsWaitingOfMoreThanAHundredthOfTheFlight) {
 TEST(SutWatch, DoubtsWaitingThatTheModelledComputerMakesLong) {
   const computer::Clock slow{ClockKind::kCpu, 200.0}, board{ClockKind::kCpu, 6.0};
   EXPECT_THAT(doubts_of(report(seconds(20), {.waiting = milliseconds(81)}), slow),
-              ElementsAre(Doubt{Doubt::Kind::kUnseenWait, "uav1", 0.081}));
+              ElementsAre(Doubt{Doubt::Kind::kUnseenWait, "uav1", 16.2}));
   EXPECT_THAT(doubts_of(report(seconds(20), {.waiting = milliseconds(10)}), slow),
               ElementsAre(Doubt{Doubt::Kind::kSlightWait, "uav1", 0.1}));
   EXPECT_THAT(doubts_of(report(seconds(6), {.waiting = milliseconds(40)}), board),

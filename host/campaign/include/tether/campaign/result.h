@@ -148,7 +148,8 @@ double total_J(const energy::Energies_J& spent_J);
 /// it that follows from the files is Warning::can_change_verdict.
 struct Doubt {
   enum class Kind {
-    kUnseenWait,       ///< the program waited on something that Tether does not see; amount: s
+    kUnseenWait,       ///< the program waited on something that Tether does not see; amount: s,
+                       ///< on the modelled computer, as if something else computed
     kParallelThreads,  ///< threads computed in parallel, but their times were added; amount: CPU
                        ///< time over wall time, > 1
     kDiskWait,         ///< the program waited for the disk, which its clock does not count; s
