@@ -257,6 +257,7 @@ std::vector<Advice> advice_on(const ConditionVerdict& lead) {
       break;
     case Ruling::kUndecided:
     case Ruling::kFastEnoughSoFar:
+      if (!lead.mixed_build.empty()) break;  // all have to be flown again
       if (is_within_spread(lead))
         advice.push_back({lead.doubt(campaign::Doubt::Kind::kBusyMachine) != nullptr
                               ? Kind::kQuietMachine
