@@ -22,7 +22,7 @@ std::vector<record::SeenAnchor> describe(const std::vector<uav::SeenAnchor>& anc
 
 Stepper::Stepper(sim::Simulator& simulator, const Timelines& times, RunLog& log,
                  Duration ground_truth_period, std::vector<Sampler> samplers,
-                 std::vector<std::optional<uav::SetpointLoss>> losses)
+                 const std::vector<std::optional<uav::SetpointLoss>>& losses)
     : simulator_(&simulator),
       times_(&times),
       log_(&log),
@@ -30,7 +30,7 @@ Stepper::Stepper(sim::Simulator& simulator, const Timelines& times, RunLog& log,
       ground_truth_period_(ground_truth_period),
       samplers_(std::move(samplers)),
       has_changed_(samplers_.size()),
-      commands_(grid_, std::move(losses)),
+      commands_(grid_, losses),
       has_battery_(samplers_.size()),
       loads_(samplers_.size()) {
   for (std::size_t uav = 0; uav < samplers_.size(); ++uav) {

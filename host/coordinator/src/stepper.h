@@ -34,7 +34,7 @@ class Stepper {
   /// `samplers`, `losses`: one per UAV of the world. The other arguments must outlive the Stepper.
   Stepper(sim::Simulator& simulator, const Timelines& times, RunLog& log,
           Duration ground_truth_period, std::vector<Sampler> samplers,
-          std::vector<std::optional<uav::SetpointLoss>> losses);
+          const std::vector<std::optional<uav::SetpointLoss>>& losses);
 
   void reset(std::uint64_t seed);
   SimTime st() const { return st_; }

@@ -20,22 +20,22 @@ const std::vector<SensorKey>& keys_of(uav::SensorKind kind) {
   return all.at(static_cast<std::size_t>(kind));
 }
 
-sim::Noise noise(const toml::Table& sensor, std::string_view key) {
+sim::Noise noise(const toml::Table& table, std::string_view key) {
   constexpr toml::Range kMean{.min = -1e6, .max = 1e6};
   constexpr toml::Range kSpread{.min = 0.0, .max = 1e6};
-  const toml::Table table =
-      sensor.table(key, {"mean", "stddev", "bias_mean", "bias_stddev", "dynamic_bias_stddev",
-                         "dynamic_bias_correlation_time_s"});
+  const toml::Table given =
+      table.table(key, {"mean", "stddev", "bias_mean", "bias_stddev", "dynamic_bias_stddev",
+                        "dynamic_bias_correlation_time_s"});
   sim::Noise noise;
-  noise.mean = table.number_or("mean", kMean, 0.0);
-  noise.stddev = table.number_or("stddev", kSpread, 0.0);
-  noise.bias_mean = table.number_or("bias_mean", kMean, 0.0);
-  noise.bias_stddev = table.number_or("bias_stddev", kSpread, 0.0);
-  noise.dynamic_bias_stddev = table.number_or("dynamic_bias_stddev", kSpread, 0.0);
+  noise.mean = given.number_or("mean", kMean, 0.0);
+  noise.stddev = given.number_or("stddev", kSpread, 0.0);
+  noise.bias_mean = given.number_or("bias_mean", kMean, 0.0);
+  noise.bias_stddev = given.number_or("bias_stddev", kSpread, 0.0);
+  noise.dynamic_bias_stddev = given.number_or("dynamic_bias_stddev", kSpread, 0.0);
   noise.dynamic_bias_correlation_time_s =
-      table.number_or("dynamic_bias_correlation_time_s", kSpread, 0.0);
+      given.number_or("dynamic_bias_correlation_time_s", kSpread, 0.0);
   if (noise.dynamic_bias_stddev > 0.0 && noise.dynamic_bias_correlation_time_s == 0.0) {
-    table.fail("dynamic_bias_correlation_time_s",
+    given.fail("dynamic_bias_correlation_time_s",
                "must be greater than 0, because 'dynamic_bias_stddev' is.");
   }
   return noise;

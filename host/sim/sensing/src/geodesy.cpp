@@ -42,7 +42,7 @@ Geodetic geodetic_of_ecef(const Vec3& p) {
 
 }  // namespace
 
-Vec3 to_ENU(const Place& place, const Vec3& v_W) {
+Vec3 to_enu(const Place& place, const Vec3& v_W) {
   const double s = std::sin(place.heading_rad), c = std::cos(place.heading_rad);
   return {v_W.x * c + v_W.y * s, -v_W.x * s + v_W.y * c, v_W.z};
 }
@@ -56,7 +56,7 @@ Geodetic geodetic_of(const Place& place, const Vec3& p_W) {
   const Vec3 origin{(n_m + place.elevation_m) * cos_lat * cos_lon,
                     (n_m + place.elevation_m) * cos_lat * sin_lon,
                     (n_m * (1.0 - kEccentricity2) + place.elevation_m) * sin_lat};
-  const Vec3 enu = to_ENU(place, p_W);
+  const Vec3 enu = to_enu(place, p_W);
   return geodetic_of_ecef(
       {origin.x - sin_lon * enu.x - sin_lat * cos_lon * enu.y + cos_lat * cos_lon * enu.z,
        origin.y + cos_lon * enu.x - sin_lat * sin_lon * enu.y + cos_lat * sin_lon * enu.z,
@@ -64,7 +64,7 @@ Geodetic geodetic_of(const Place& place, const Vec3& p_W) {
 }
 
 // Above the troposphere, as at its top.
-double standard_pressure_Pa(double altitude_m) {
+double standard_pressure_pa(double altitude_m) {
   const double ratio = 1.0 - kLapse_K_m * std::min(altitude_m, 11'000.0) / kTemperature0_K;
   return kPressure0_Pa * std::pow(ratio, kExponent);
 }

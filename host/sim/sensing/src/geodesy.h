@@ -16,11 +16,11 @@ struct Geodetic {
 Geodetic geodetic_of(const Place& place, const uav::Vec3& p_W);
 
 /// A vector of W along east, north and up of the place.
-uav::Vec3 to_ENU(const Place& place, const uav::Vec3& v_W);
+uav::Vec3 to_enu(const Place& place, const uav::Vec3& v_W);
 
 /// The pressure of the standard atmosphere [Pa] at an altitude above sea level, up to 11 km
 /// (ISO 2533:1975), and the altitude of a pressure [m].
-double standard_pressure_Pa(double altitude_m);
+double standard_pressure_pa(double altitude_m);
 double standard_altitude_m(double pressure_Pa);
 
 }  // namespace tether::sim

@@ -40,7 +40,7 @@ TEST(Geodesy, ThePlaneIsFlatAndTheEarthIsRound) {
 
 TEST(Geodesy, AHeadingTurnsWClockwise) {
   const Place place{0.0, 0.0, 0.0, 0.5 * std::numbers::pi};
-  const uav::Vec3 enu = to_ENU(place, {0.0, 1.0, 3.0});
+  const uav::Vec3 enu = to_enu(place, {0.0, 1.0, 3.0});
   EXPECT_NEAR(enu.x, 1.0, 1e-12) << "W's y points east";
   EXPECT_NEAR(enu.y, 0.0, 1e-12);
   EXPECT_EQ(enu.z, 3.0);
@@ -51,10 +51,10 @@ TEST(Geodesy, AHeadingTurnsWClockwise) {
 TEST(StandardAtmosphere, HasThePressuresOfTheStandard) {
   for (const auto& [altitude_m, pressure_Pa] :
        {std::pair{0.0, 101325.0}, {1000.0, 89874.6}, {5000.0, 54019.9}, {11000.0, 22632.0}}) {
-    EXPECT_NEAR(standard_pressure_Pa(altitude_m), pressure_Pa, 1.0) << altitude_m;
-    EXPECT_NEAR(standard_altitude_m(standard_pressure_Pa(altitude_m)), altitude_m, 1e-6);
+    EXPECT_NEAR(standard_pressure_pa(altitude_m), pressure_Pa, 1.0) << altitude_m;
+    EXPECT_NEAR(standard_altitude_m(standard_pressure_pa(altitude_m)), altitude_m, 1e-6);
   }
-  EXPECT_TRUE(std::isfinite(standard_pressure_Pa(1e6)));
+  EXPECT_TRUE(std::isfinite(standard_pressure_pa(1e6)));
   EXPECT_TRUE(std::isfinite(standard_altitude_m(-1.0)));
 }
 

@@ -70,7 +70,7 @@ uav::NavSatSample measure_navsat(const NavSatModel& model, const TrueMotion& tru
   sample.latitude_deg = geodetic.latitude_deg;
   sample.longitude_deg = geodetic.longitude_deg;
   sample.altitude_m = geodetic.altitude_m;
-  sample.velocity_ENU_m_s = to_ENU(place, v_W);
+  sample.velocity_ENU_m_s = to_enu(place, v_W);
   sample.horizontal_accuracy_m = noise_stddev(model.horizontal_m, key.at);
   sample.vertical_accuracy_m = noise_stddev(model.vertical_m, key.at);
   sample.speed_accuracy_m_s = noise_stddev(model.horizontal_velocity_m_s, key.at);
@@ -88,7 +88,7 @@ uav::MagnetometerSample measure_magnetometer(const MagnetometerModel& model,
 uav::BarometerSample measure_barometer(const BarometerModel& model, const TrueMotion& truth,
                                        const Place& place, const MeasurementKey& key) {
   const double origin_m = model.reference_altitude_m.value_or(place.elevation_m);
-  const double pressure_Pa = standard_pressure_Pa(origin_m + truth.X_WS.p.z) +
+  const double pressure_Pa = standard_pressure_pa(origin_m + truth.X_WS.p.z) +
                              noise_of(model.pressure_Pa, key, "pressure");
   return {key.at, key.index, pressure_Pa, standard_altitude_m(pressure_Pa)};
 }

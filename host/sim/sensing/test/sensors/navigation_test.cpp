@@ -69,7 +69,7 @@ TEST(NavSat, WithoutNoiseGivesPlaceAndVelocity) {
   EXPECT_EQ(got.latitude_deg, truth.latitude_deg);
   EXPECT_EQ(got.longitude_deg, truth.longitude_deg);
   EXPECT_EQ(got.altitude_m, truth.altitude_m);
-  EXPECT_EQ(got.velocity_ENU_m_s, to_ENU(place, kTruth.v_WS_W));
+  EXPECT_EQ(got.velocity_ENU_m_s, to_enu(place, kTruth.v_WS_W));
   EXPECT_EQ(got.horizontal_accuracy_m, 0.0);
 }
 
