@@ -28,7 +28,10 @@ coordinator::RunOptions options_of(Choices& choices) {
                                 uav::NormalDelay{milliseconds(2), milliseconds(1)}};
   const uav::OnDemandTiming range{uav::ConstantDelay{std::chrono::microseconds(97'700)}};
   const Duration latency = milliseconds(choices.byte() % 4 * 3);
-  options.uavs.assign(1 + choices.below(3), {{camera, imu, range}, latency, {}});
+  coordinator::UavOptions uav;
+  uav.timings = {camera, imu, range};
+  uav.command_latency = uav::ConstantDelay{latency};
+  options.uavs.assign(1 + choices.below(3), uav);
   return options;
 }
 
