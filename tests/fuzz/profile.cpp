@@ -13,7 +13,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   fuzz::require(!read->sensors.empty(), "a profile of nothing");
   for (const auto& [name, sensor] : read->sensors) {
     fuzz::require(!name.empty() && sensor.kind.has_value(), "a sensor without a name or kind");
-    fuzz::require(!sensor.min_m || !sensor.max_m || *sensor.max_m >= 0.0, "a negative range");
+    if (sensor.kind != uav::SensorKind::kRange) continue;
+    sim::Sensor range{name, {}, 0.0, sim::RangeModel{}};
+    for (const scenario::SensorSetting& setting : sensor.settings) setting.set(range);
+    fuzz::require(std::get<sim::RangeModel>(range.model).max_m >= 0.0, "a negative range");
   }
   return 0;
 }
