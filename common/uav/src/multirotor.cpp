@@ -15,6 +15,7 @@ double speed_for(const MultirotorParameters& parameters, double thrust_N) {
 }
 
 /// Thrust, reaction torque and drag of all rotors at their speeds (Furrer et al., eqs. 5 to 8).
+/// `v_B`: velocity of the body through the air.
 Wrench rotor_wrench(const MultirotorParameters& parameters, const BodyState& body, const Vec3& v_B,
                     const MultirotorState& state) {
   Wrench sum;
@@ -57,14 +58,19 @@ MultirotorParameters hummingbird() {
 }
 
 MultirotorState hover_state(const MultirotorParameters& parameters, double gravity_m_s2,
-                            double yaw_rad) {
+                            double yaw_rad, const Vec3& v_WA) {
   const RotorThrusts thrusts =
       Mixer(parameters)
           .mix({parameters.mass_kg * gravity_m_s2, {}}, max_rotor_thrust_N(parameters));
   MultirotorState state;
+  double level_drag_N_s_m = parameters.linear_drag_N_s_m;
   for (std::size_t i = 0; i < parameters.rotors.size(); ++i) {
     state.rotor_speed_rad_s[i] = speed_for(parameters, thrusts[i]);
+    level_drag_N_s_m += parameters.drag_coefficient * state.rotor_speed_rad_s[i];
   }
+  const Vec3 drag_N{level_drag_N_s_m * v_WA.x, level_drag_N_s_m * v_WA.y,
+                    parameters.linear_drag_N_s_m * v_WA.z};
+  if (v_WA != Vec3{}) state.velocity_integral_W = (-1.0 / parameters.mass_kg) * drag_N;
   state.yaw_setpoint_rad = wrap_angle_rad(yaw_rad);
   return state;
 }
@@ -93,11 +99,11 @@ RotorSpeeds Multirotor::wanted_speeds(const BodyState& body, const Setpoint& set
   return speeds;
 }
 
-Wrench Multirotor::step(const BodyState& body, const Setpoint& setpoint,
-                        MultirotorState& state) const {
+Wrench Multirotor::step(const BodyState& body, const Setpoint& setpoint, MultirotorState& state,
+                        const Vec3& v_WA) const {
   advance_rotors(wanted_speeds(body, setpoint, state), state);
 
-  const Vec3 v_B = rotate(inverse(body.q_WB), body.v_WB);
+  const Vec3 v_B = rotate(inverse(body.q_WB), body.v_WB - v_WA);
   Wrench wrench = rotor_wrench(parameters_, body, v_B, state);
   wrench.force_B = wrench.force_B - parameters_.linear_drag_N_s_m * v_B;
   return wrench;

@@ -116,9 +116,10 @@ class Mixer {
   std::array<Vec4, 4> gram_{};                               // lower Cholesky factor of A·Aᵀ
 };
 
-/// Rotors at hover thrust and the controller at rest, heading along `yaw_rad`.
+/// Rotors at hover thrust and the controller at rest, heading along `yaw_rad`, as if it had hovered
+/// in a wind `v_WA` before.
 MultirotorState hover_state(const MultirotorParameters& parameters, double gravity_m_s2,
-                            double yaw_rad);
+                            double yaw_rad, const Vec3& v_WA = {});
 
 /// A multirotor with its controller, stepped in a world. What its steps need of the parameters
 /// alone is computed once.
@@ -137,8 +138,11 @@ class Multirotor {
   ///
   /// Call once per step with the state at its beginning; apply the returned wrench for the whole
   /// step. Deterministic, allocates nothing, never fails: non-finite input gives a non-finite
-  /// wrench. @pre the mask of `setpoint` has a level, and it has as many rotor speeds as rotors
-  Wrench step(const BodyState& body, const Setpoint& setpoint, MultirotorState& state) const;
+  /// wrench. `v_WA`: the wind, which drags the rotors and the airframe along; the controller does
+  /// not know it. @pre the mask of `setpoint` has a level, and it has as many rotor speeds as
+  /// rotors
+  Wrench step(const BodyState& body, const Setpoint& setpoint, MultirotorState& state,
+              const Vec3& v_WA = {}) const;
 
  private:
   RotorSpeeds wanted_speeds(const BodyState& body, const Setpoint& setpoint,
