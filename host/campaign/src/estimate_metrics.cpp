@@ -90,7 +90,7 @@ const record::SensorInfo* find_camera(const record::Record& record, const std::s
 struct Look {
   Estimate estimate;
   const record::SensorInfo* camera = nullptr;
-  const record::Anchor* anchor = nullptr;
+  record::Anchor anchor;  // when the image was taken
   const record::Interaction* read = nullptr;
   uav::Pose X_WB;
 };
@@ -118,16 +118,17 @@ MetricOutcome with_last_look(const scenario::Metric& metric, const record::Recor
                     "received",
                     metric.uav, estimate->image_index, estimate->camera));
   }
-  const auto X_WB = pose_at(record, metric.uav, read->sample_state_at.value_or(*read->sampled_at));
+  const SimTime taken_at = read->sample_state_at.value_or(*read->sampled_at);
+  const auto X_WB = pose_at(record, metric.uav, taken_at);
   if (!X_WB) return no_ground_truth(metric);
-  return evaluate({*estimate, camera, anchor, read, *X_WB});
+  return evaluate({*estimate, camera, anchor_at(*anchor, taken_at), read, *X_WB});
 }
 
 MetricOutcome bearing_error_of(const Look& look) {
-  const auto roi = roi_in_image(*look.read, *look.camera, look.X_WB, *look.anchor);
+  const auto roi = roi_in_image(*look.read, *look.camera, look.X_WB, look.anchor);
   if (!roi) {
     return missing(fmt::format(
-        "'{}' {} the camera '{}' in the image of the estimate", look.anchor->name,
+        "'{}' {} the camera '{}' in the image of the estimate", look.anchor.name,
         look.read->seen_anchors ? "is hidden from" : "is not in front of", look.camera->name));
   }
   const double true_rad = roi_bearing_rad(*look.camera, *roi);
@@ -137,11 +138,10 @@ MetricOutcome bearing_error_of(const Look& look) {
 MetricOutcome distance_error_of(const Look& look) {
   if (!look.estimate.distance_m) {
     return missing(
-        fmt::format("the SUT's last estimate of '{}' has no distance", look.anchor->name));
+        fmt::format("the SUT's last estimate of '{}' has no distance", look.anchor.name));
   }
   const uav::Vec3 p_WC = camera_pose(*look.camera, look.X_WB).p;
-  const double true_m =
-      std::hypot(look.anchor->p_WA_m[0] - p_WC.x, look.anchor->p_WA_m[1] - p_WC.y);
+  const double true_m = std::hypot(look.anchor.p_WA_m[0] - p_WC.x, look.anchor.p_WA_m[1] - p_WC.y);
   return {std::abs(*look.estimate.distance_m - true_m), ""};
 }
 

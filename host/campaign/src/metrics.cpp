@@ -24,7 +24,7 @@ std::vector<double> bearings_until_finish(const scenario::Metric& metric,
   for (const auto& logged : record.ground_truth) {
     const record::GroundTruth& truth = logged.message;
     if (truth.uav != metric.uav || (finish && truth.at > *finish)) continue;
-    bearings_rad.push_back(true_bearing_rad(truth, anchor));
+    bearings_rad.push_back(true_bearing_rad(truth, anchor_at(anchor, truth.at)));
   }
   return bearings_rad;
 }

@@ -29,7 +29,7 @@ std::optional<StartAndEnd> start_and_end(const record::Record& record, const std
   return StartAndEnd{*start, *end};
 }
 
-// The anchor is abeam at the foot of its perpendicular on the start line.
+// The anchor is abeam at the foot of its perpendicular on the start line, where it was at ST 0.
 MetricOutcome abeam_error(const scenario::Metric& metric, const record::Record& record) {
   const record::Anchor* anchor = find_anchor(record, metric.anchor);
   if (anchor == nullptr) return no_anchor(metric);
@@ -37,7 +37,8 @@ MetricOutcome abeam_error(const scenario::Metric& metric, const record::Record& 
   if (!path) return why_no_end(metric, record);
   const double yaw_rad = uav::yaw_rad(path->start.q);
   const uav::Vec3 ahead{std::cos(yaw_rad), std::sin(yaw_rad), 0.0};
-  const uav::Vec3 p_WA{anchor->p_WA_m[0], anchor->p_WA_m[1], anchor->p_WA_m[2]};
+  const record::Anchor start = anchor_at(*anchor, SimTime{});
+  const uav::Vec3 p_WA{start.p_WA_m[0], start.p_WA_m[1], start.p_WA_m[2]};
   const double along_m = dot(p_WA - path->start.p, ahead);
   const uav::Vec3 abeam = path->start.p + along_m * ahead;
   return {horizontal_m(path->end.p - abeam), ""};

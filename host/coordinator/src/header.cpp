@@ -68,21 +68,32 @@ record::SensorInfo describe(const std::string& uav, const uav::SensorDescription
   return info;
 }
 
-record::Anchor describe(const sim::PlacedAnchor& placed) {
+record::Anchor describe(const sim::World& world, const sim::PlacedAnchor& placed) {
   const auto& [anchor, X_WA] = placed;
-  return {.name = anchor.name,
-          .shape = std::string(uav::name(anchor.shape)),
-          .size_m = {anchor.size_m.x, anchor.size_m.y, anchor.size_m.z},
-          .p_WA_m = {X_WA.p.x, X_WA.p.y, X_WA.p.z},
-          .q_WA = {X_WA.q.w, X_WA.q.x, X_WA.q.y, X_WA.q.z}};
+  record::Anchor info{.name = anchor.name,
+                      .shape = std::string(uav::name(anchor.shape)),
+                      .size_m = {anchor.size_m.x, anchor.size_m.y, anchor.size_m.z},
+                      .p_WA_m = {X_WA.p.x, X_WA.p.y, X_WA.p.z},
+                      .q_WA = {X_WA.q.w, X_WA.q.x, X_WA.q.y, X_WA.q.z}};
+  const auto model = std::ranges::find(world.models, anchor.name, &sim::Model::name);
+  if (model == world.models.end() || !model->path) return info;
+  for (const uav::Waypoint& point : model->path->waypoints)
+    info.path.push_back({point.at, {point.p_m.x, point.p_m.y, point.p_m.z}, point.yaw_rad});
+  info.path_repeats = model->path->repeats;
+  info.path_delay = model->path->delay;
+  std::tie(info.p_WO_m[0], info.p_WO_m[1], info.p_WO_m[2]) =
+      std::tie(model->p_WO.x, model->p_WO.y, model->p_WO.z);
+  return info;
 }
 
-/// Of all rotors at full speed together with gravity.
-double max_acceleration_m_s2(const uav::MultirotorParameters& airframe, double gravity_m_s2) {
+/// Of all rotors at full speed together with gravity, and the drag of the wind.
+double max_acceleration_m_s2(const uav::MultirotorParameters& airframe, const sim::World& world) {
   const double speed = airframe.max_rotor_speed_rad_s;
-  const double thrust_N =
-      static_cast<double>(airframe.rotors.size()) * airframe.thrust_coefficient * speed * speed;
-  return thrust_N / airframe.mass_kg + std::abs(gravity_m_s2);
+  const auto rotors = static_cast<double>(airframe.rotors.size());
+  const double thrust_N = rotors * airframe.thrust_coefficient * speed * speed;
+  const double drag_N = (airframe.linear_drag_N_s_m + rotors * airframe.drag_coefficient * speed) *
+                        most_wind_m_s(world.wind);
+  return (thrust_N + drag_N) / airframe.mass_kg + std::abs(world.gravity_m_s2);
 }
 
 /// Of all rotors at full speed, as if each one turned the UAV the same way.
@@ -121,7 +132,7 @@ record::Header Coordinator::Impl::make_header() const {
          .command_latency = bounds(session.command_latency).first,
          .concurrent = session.hello.concurrent,
          .cores = session.hello.clock.adds_up_cores() ? session.cores : 0,
-         .max_acceleration_m_s2 = max_acceleration_m_s2(uav.airframe, world().gravity_m_s2),
+         .max_acceleration_m_s2 = max_acceleration_m_s2(uav.airframe, world()),
          .required_clock = options_.uavs[session.uav].clock,
          .build_id = session.hello.build_id,
          .build = parts_of(session.hello),
@@ -154,7 +165,7 @@ record::Header Coordinator::Impl::make_header() const {
       header.boards.push_back({.name = board.name, .cores = board.cores, .is_real = board.is_real});
   }
   for (const sim::PlacedAnchor& anchor : world().anchors)
-    header.anchors.push_back(describe(anchor));
+    header.anchors.push_back(describe(world(), anchor));
   return header;
 }
 

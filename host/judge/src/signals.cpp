@@ -127,7 +127,8 @@ std::optional<std::size_t> Signals::find(const mission::Condition& condition) {
   const auto* source = std::ranges::find(kSources, condition.quantity->name, &Source::quantity);
   stl::Signal signal{std::string(condition.quantity->name), {}};
   for (const GroundTruth* truth : truths_) {
-    const auto value = source->value(*truth, needs_anchor ? &*anchor : nullptr);
+    const auto now = needs_anchor ? record::anchor_at(*anchor, truth->at) : record::Anchor{};
+    const auto value = source->value(*truth, needs_anchor ? &now : nullptr);
     if (!value || !std::isfinite(*value)) return std::nullopt;
     signal.values.push_back(*value);
   }

@@ -30,11 +30,7 @@ void try_conditions(const scenario::CampaignScenario& entry, const sim::World& w
     if (!prepared.insert(is_slowed ? condition.slowed_from : name).second) continue;
     sim::World copy = world;
     const BackEnd back_end = find_back_end(condition.simulator);
-    const auto varied = scenario::vary(entry.scenario.variations, seed, back_end.reads_world, copy);
-    scenario::resolve_step(entry.scenario, copy);
-    scenario::resolve_energy(entry.scenario, condition, copy, warn);
-    scenario::resolve_sensors(entry.scenario, condition, copy, warn);
-    scenario::vary_mountings(entry.scenario.variations, varied, copy);
+    resolve_world(entry.scenario, condition, seed, back_end.reads_world, copy, warn);
     back_end.prepare(std::move(copy), warn);
   }
 }

@@ -238,14 +238,9 @@ campaign::TrialResult run_trial(const TrialSpec& spec, const FindBackEnd& find_b
   scenario::require_clock(spec.scenario, spec.condition);
   WarningLog warnings(observer.on_warnings);
   sim::World world = load_world(spec, back_end, warnings);
-  const std::vector<scenario::Varied> varied =
-      scenario::vary(spec.scenario.variations, spec.seed, back_end.reads_world, world);
-  scenario::resolve_step(spec.scenario, world);
-  scenario::resolve_energy(spec.scenario, spec.condition, world, warnings.sink());
-  const TrialInputs inputs{
-      scenario::resolve_sensors(spec.scenario, spec.condition, world, warnings.sink()),
-      replayed_time(spec)};
-  scenario::vary_mountings(spec.scenario.variations, varied, world);
+  scenario::Resolved resolved = resolve_world(spec.scenario, spec.condition, spec.seed,
+                                              back_end.reads_world, world, warnings.sink());
+  const TrialInputs inputs{std::move(resolved.timings), replayed_time(spec)};
   const campaign::StepReport step{world.step, world.step_from};
   const SimulatorSetup setup = simulator_setup(spec, world, observer, warnings, stop);
   require_sut_programs(spec.scenario, spec.condition, spec.waits_for_sut);
@@ -270,7 +265,7 @@ campaign::TrialResult run_trial(const TrialSpec& spec, const FindBackEnd& find_b
   result.this_run.machine = os::describe_machine();
   result.warnings = warnings.all();
   result.step = step;
-  result.varied = varied;
+  result.varied = resolved.varied;
   folder.release_room();
   keep(spec, folder, result);
   return result;

@@ -21,7 +21,11 @@
 namespace tether::scenario {
 namespace {
 
-enum class Part { kUav, kModel, kWorld, kSensor };
+/// kWind: of a world with wind. kPath: of a model with a path.
+enum class Part { kUav, kModel, kPath, kWorld, kWind, kSensor };
+bool is_of_world(Part part) {
+  return part == Part::kWorld || part == Part::kWind;
+}
 
 struct Quantity {
   std::string_view name;
@@ -108,6 +112,27 @@ constexpr std::array kQuantities = {
                    visual.material.ambient_rgb = factor * visual.material.ambient_rgb;
                  }
              }},
+    Quantity{"path_delay_s", Part::kPath, false,
+             [](sim::World&, sim::Uav*, sim::Model* model, sim::Sensor*, double delay_s) {
+               model->path->delay += duration_from_seconds(delay_s);
+             }},
+    Quantity{"path_time_factor", Part::kPath, true,
+             [](sim::World&, sim::Uav*, sim::Model* model, sim::Sensor*, double factor) {
+               for (uav::Waypoint& point : model->path->waypoints)
+                 point.at = duration_from_seconds(factor * to_seconds(point.at));
+             }},
+    Quantity{"wind_factor", Part::kWind, true,
+             [](sim::World& world, sim::Uav*, sim::Model*, sim::Sensor*, double factor) {
+               world.wind.v_WA_m_s = factor * world.wind.v_WA_m_s;
+             }},
+    Quantity{"wind_yaw_deg", Part::kWind, false,
+             [](sim::World& world, sim::Uav*, sim::Model*, sim::Sensor*, double yaw_deg) {
+               world.wind.v_WA_m_s = rotate(turn(0.0, 0.0, yaw_deg), world.wind.v_WA_m_s);
+             }},
+    Quantity{"turbulence_factor", Part::kWind, true,
+             [](sim::World& world, sim::Uav*, sim::Model*, sim::Sensor*, double factor) {
+               world.wind.turbulence *= factor;
+             }},
     Quantity{"light_factor", Part::kWorld, true,
              [](sim::World& world, sim::Uav*, sim::Model*, sim::Sensor*, double factor) {
                world.ambient_rgb = factor * world.ambient_rgb;
@@ -176,6 +201,17 @@ Varied value_of(const Variation& variation, std::uint64_t seed, std::uint64_t at
   return {variation.name, variation.text(), value};
 }
 
+/// Of a model and those that are nested in it.
+void change_paths(const Variation& variation, double value, sim::World& world) {
+  if (!find(world.models, variation.of, variation, "the model").path)
+    fail(variation, fmt::format("varies the path of the model '{}', which has none. Give it one "
+                                "with [[moving]]",
+                                variation.of));
+  for (sim::Model& model : world.models)
+    if (model.path && (model.name == variation.of || model.name.starts_with(variation.of + "::")))
+      quantity_of(variation).change(world, nullptr, &model, nullptr, value);
+}
+
 void change_uavs(const Variation& variation, double value, sim::World& world) {
   const Quantity& quantity = quantity_of(variation);
   const auto change = [&](sim::Uav& uav) {
@@ -222,6 +258,18 @@ void place_anchor(const sim::Model& model, const uav::Pose& X_WM_before, sim::Wo
       placed.X_WA = model.X_WM * (uav::inverse(X_WM_before) * placed.X_WA);
 }
 
+/// Those that are nested in a model stay in their places of it.
+void move_nested(sim::Model& model, const uav::Pose& X_WM_before, sim::World& world) {
+  model.p_WO = model.p_WO + (model.X_WM.p - X_WM_before.p);
+  for (sim::Model& part : world.models) {
+    if (!part.name.starts_with(model.name + "::")) continue;
+    const uav::Pose before = part.X_WM;
+    part.X_WM = model.X_WM * (uav::inverse(X_WM_before) * before);
+    part.p_WO = model.p_WO;
+    place_anchor(part, before, world);
+  }
+}
+
 /// All that is varied of one model at once: its coordinates are not independent of each other.
 void place_model(const std::vector<const Variation*>& variations, std::uint64_t seed,
                  sim::World& world, std::vector<Varied>& values) {
@@ -239,6 +287,7 @@ void place_model(const std::vector<const Variation*>& variations, std::uint64_t 
     }
     if (!std::ranges::includes(allowed, touching(world, model))) continue;
     place_anchor(model, before.X_WM, world);
+    move_nested(model, before.X_WM, world);
     values.insert(values.end(), drawn.begin(), drawn.end());
     return;
   }
@@ -266,11 +315,13 @@ std::vector<Varied> vary(const std::vector<Variation>& variations, std::uint64_t
   std::vector<std::pair<std::string, std::vector<const Variation*>>> of_models;
   for (const Variation& variation : variations) {
     const Part part = quantity_of(variation).part;
-    if (is_read_elsewhere && (part == Part::kModel || part == Part::kWorld))
+    if (is_read_elsewhere && part != Part::kUav && part != Part::kSensor)
       fail(variation,
            fmt::format("varies {}, but this simulator reads the world's file itself. Use "
                        "the embedded simulator, or vary UAVs and sensors only",
                        variation.text()));
+    if (part == Part::kWind && world.wind.is_calm())
+      fail(variation, "varies the wind, but there is none. Give the scenario a table [wind]");
     if (part == Part::kModel) {
       const auto known =
           std::ranges::find(of_models, variation.of, &decltype(of_models)::value_type::first);
@@ -282,7 +333,8 @@ std::vector<Varied> vary(const std::vector<Variation>& variations, std::uint64_t
     }
     values.push_back(value_of(variation, seed, 0));
     if (part == Part::kUav) change_uavs(variation, values.back().value, world);
-    if (part == Part::kWorld)
+    if (part == Part::kPath) change_paths(variation, values.back().value, world);
+    if (is_of_world(part))
       quantity_of(variation).change(world, nullptr, nullptr, nullptr, values.back().value);
   }
   for (const auto& [model, of_model] : of_models) place_model(of_model, seed, world, values);

@@ -51,6 +51,24 @@ double value(const std::vector<Varied>& values, const std::string& name) {
   return std::ranges::find(values, name, &Varied::name)->value;
 }
 
+TEST(Vary, PathsAndWindVaryWhereThereAreAny) {
+  sim::World moving = world();
+  moving.wind.v_WA_m_s = {2.0, 0.0, 0.0};
+  moving.models[2].path = uav::Path{{{{}, {}, 0.0}, {std::chrono::seconds(2), {0, 3, 0}, 0.0}}};
+  const std::vector<Variation> all = {
+      of("path_delay_s", "pillar", OneOf{{0.5}}), of("path_time_factor", "pillar", OneOf{{3.0}}),
+      of("wind_factor", "", OneOf{{2.0}}), of("wind_yaw_deg", "", OneOf{{90.0}})};
+  sim::World changed = moving;
+  vary(all, 1, false, changed);
+  EXPECT_EQ(changed.models[2].path->delay, std::chrono::milliseconds(500));
+  EXPECT_EQ(changed.models[2].path->waypoints[1].at, std::chrono::seconds(6));
+  EXPECT_LT(norm(changed.wind.v_WA_m_s - Vec3{0.0, 4.0, 0.0}), 1e-12);
+  for (const Variation& one : all) {
+    sim::World still = world();
+    EXPECT_THROW(vary({one}, 1, false, still), Error) << one.quantity;
+  }
+}
+
 TEST(Vary, EachDistributionHasItsMoments) {
   const std::vector<Variation> all = {of("start_x_m", "", Uniform{1.0, 3.0}),
                                       of("start_y_m", "", Normal{-1.0, 0.5}),

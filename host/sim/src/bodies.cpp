@@ -14,6 +14,17 @@ std::vector<MovingBody> moving_bodies(const World& world) {
   return bodies;
 }
 
+DrivenState driven_state(const MovingBody& body, SimTime at) {
+  const uav::PathState path = state_at(*body.model->path, at - SimTime{});
+  const uav::Pose X_WO{body.model->p_WO, {}};
+  const uav::Pose X_WO_now = moved(X_WO, path);
+  const uav::Pose X_WB = X_WO_now * (inverse(X_WO) * (body.model->X_WM * body.link->X_ML));
+  const uav::Vec3 arm = X_WB.p - X_WO_now.p;
+  const uav::Vec3 w{0.0, 0.0, path.yaw_rate_rad_s}, alpha{0.0, 0.0, path.yaw_acceleration_rad_s2};
+  return {X_WB, path.v_m_s + cross(w, arm), w,
+          path.a_m_s2 + cross(alpha, arm) + cross(w, cross(w, arm)), alpha};
+}
+
 std::vector<FixedBody> fixed_bodies(const World& world) {
   std::vector<FixedBody> bodies;
   for (const Model& model : world.models) {

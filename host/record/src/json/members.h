@@ -337,12 +337,23 @@ void members(auto& io, Maybe<SensorInfo> auto& m) {
   io.object("camera", [&](auto& camera) { members(camera, io.value_of(m.camera)); });
 }
 
+void members(auto& io, Maybe<Waypoint> auto& m) {
+  io("at_ns", m.at);
+  io("p_m", m.p_m);
+  io("yaw_rad", m.yaw_rad);
+}
+
 void members(auto& io, Maybe<Anchor> auto& m) {
   io("name", m.name);
   io("shape", m.shape);
   io("size_m", m.size_m);
   io("p_WA_m", m.p_WA_m);
   io("q_WA", m.q_WA);
+  if (!io.has("path", !m.path.empty())) return;
+  io.list("path", m.path);
+  io.flag("path_repeats", m.path_repeats);
+  io("path_delay_ns", m.path_delay);
+  io("p_WO_m", m.p_WO_m);
 }
 
 void members(auto& io, Maybe<WorkCost> auto& m) {

@@ -145,9 +145,10 @@ std::optional<TrueRoi> find_true_roi(const record::Record& record, const record:
   });
   const auto X_WB = campaign::pose_at(record, image.uav, image.at);
   if (anchor == anchors.end() || camera == sensors.end() || !X_WB) return std::nullopt;
+  const record::Anchor now = anchor_at(*anchor, image.at);
   const auto* read = campaign::find_read(record, image.uav, image.sensor, image.index);
-  const auto roi = read == nullptr ? campaign::true_roi(*camera, *X_WB, *anchor)
-                                   : campaign::roi_in_image(*read, *camera, *X_WB, *anchor);
+  const auto roi = read == nullptr ? campaign::true_roi(*camera, *X_WB, now)
+                                   : campaign::roi_in_image(*read, *camera, *X_WB, now);
   return TrueRoi{roi ? campaign::visible_part(*camera, *roi) : std::nullopt,
                  read != nullptr && read->seen_anchors.has_value()};
 }

@@ -119,6 +119,17 @@ Way way_of(const PlottedRun& run) {
   return way;
 }
 
+/// The way of an anchor that moves.
+std::vector<Point> way_of(const record::Anchor& anchor, SimTime until) {
+  std::vector<Point> way;
+  for (std::size_t i = 0; i <= kPoints; ++i) {
+    const auto now = anchor_at(
+        anchor, SimTime{} + (until - SimTime{}) * static_cast<int>(i) / static_cast<int>(kPoints));
+    way.push_back({now.p_WA_m[0], now.p_WA_m[1]});
+  }
+  return way;
+}
+
 std::vector<Point> outline_of(const record::Anchor& anchor) {
   const Point centre{anchor.p_WA_m[0], anchor.p_WA_m[1]};
   const double half_x_m = 0.5 * anchor.size_m[0], half_y_m = 0.5 * anchor.size_m[1];
@@ -189,20 +200,25 @@ void add_ends(Drawing& drawing, std::span<const PlottedRun> runs, const std::vec
   }
 }
 
+/// Anchors that move are drawn where they begin.
 std::string anchors_script(Drawing& drawing, const std::vector<record::Anchor>& anchors,
-                           double middle_y_m) {
+                           SimTime until, double middle_y_m) {
   std::string labels;
   for (std::size_t i = 0; i < anchors.size(); ++i) {
-    const std::vector<Point> outline = outline_of(anchors[i]);
+    const record::Anchor start = anchor_at(anchors[i], SimTime{});
+    const std::vector<Point> outline = outline_of(start);
     drawing.add(block_of(fmt::format("anchor{}", i), outline), "with filledcurves closed",
                 Ink::kAnchor, "", "fillstyle solid 0.45 border");
+    if (!anchors[i].path.empty())
+      drawing.add(block_of(fmt::format("anchor_path{}", i), way_of(anchors[i], until)),
+                  "with lines linewidth 1 dashtype '.'", Ink::kAnchor, "");
     Bounds around;
     for (const Point& p : outline) around.add(p);
-    const bool below = anchors[i].p_WA_m[1] > middle_y_m;
-    labels += fmt::format("set label {} at {:.6g},{:.6g} center offset 0,{} textcolor {}\n",
-                          quoted(anchors[i].name), anchors[i].p_WA_m[0],
-                          below ? around.bottom_m : around.top_m, below ? -0.9 : 0.8,
-                          gnuplot_colour(Ink::kForeground));
+    const bool below = start.p_WA_m[1] > middle_y_m;
+    labels +=
+        fmt::format("set label {} at {:.6g},{:.6g} center offset 0,{} textcolor {}\n",
+                    quoted(start.name), start.p_WA_m[0], below ? around.bottom_m : around.top_m,
+                    below ? -0.9 : 0.8, gnuplot_colour(Ink::kForeground));
   }
   return labels;
 }
@@ -215,7 +231,7 @@ Bounds bounds_of(const std::vector<Way>& ways, const std::vector<record::Anchor>
       for (const Point& p : of_task) bounds.add(p);
   }
   for (const record::Anchor& anchor : anchors) {
-    for (const Point& p : outline_of(anchor)) bounds.add(p);
+    for (const Point& p : outline_of(anchor_at(anchor, SimTime{}))) bounds.add(p);
   }
   return bounds;
 }
@@ -261,8 +277,14 @@ std::optional<Plot> path_plot(std::span<const PlottedRun> runs) {
   for (const PlottedRun& run : runs) ways.push_back(way_of(run));
   if (std::ranges::all_of(ways, [](const Way& way) { return way.path.empty(); }))
     return std::nullopt;
-  const std::vector<record::Anchor>& anchors = runs.front().record->header.anchors;
-  const Bounds bounds = bounds_of(ways, anchors);
+  const record::Record& first = *runs.front().record;
+  const std::vector<record::Anchor>& anchors = first.header.anchors;
+  const SimTime until =
+      first.ground_truth.empty() ? SimTime{} : first.ground_truth.back().message.at;
+  Bounds bounds = bounds_of(ways, anchors);
+  for (const record::Anchor& anchor : anchors)
+    if (!anchor.path.empty())
+      for (const Point& p : way_of(anchor, until)) bounds.add(p);
   const int rows = key_rows(runs, ways);
   Frame frame{.top_px = 18 + 21 * rows,
               .key_rows = rows,
@@ -272,7 +294,7 @@ std::optional<Plot> path_plot(std::span<const PlottedRun> runs) {
   const double tick_m = 0.05 * std::max({bounds.width_m(), bounds.height_m(), 1.0});
   Drawing drawing;
   const std::string labels =
-      anchors_script(drawing, anchors, 0.5 * (bounds.bottom_m + bounds.top_m));
+      anchors_script(drawing, anchors, until, 0.5 * (bounds.bottom_m + bounds.top_m));
   for (std::size_t i = 0; i < ways.size(); ++i) add_way(drawing, runs[i], ways[i], i, tick_m);
   add_ends(drawing, runs, ways);
   std::string title = "Path, seen from above";

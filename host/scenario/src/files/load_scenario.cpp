@@ -4,6 +4,7 @@
 #include "tables/read_clock.h"
 #include "tables/read_computers.h"
 #include "tables/read_delay.h"
+#include "tables/read_motion.h"
 #include "tables/read_radio.h"
 #include "tables/read_replay.h"
 #include "tables/read_sensor_profile.h"
@@ -28,8 +29,6 @@ namespace {
 
 constexpr std::array<std::string_view, 2> kPolicies = {"conservative_barrier", "free_running"};
 constexpr std::array<std::string_view, 2> kSimulators = {"mujoco", "gazebo"};
-
-constexpr double kLongestRun_s = 7 * 24 * 3600.0;
 
 // Profiles.
 
@@ -433,6 +432,7 @@ Scenario read_scenario(const std::filesystem::path& file, const std::vector<Sett
   read_uavs(root, scenario);
   require_users(scenario);
   scenario.radio = read_radio(root);
+  read_motion(root, scenario);
   scenario.variations = read_vary(root);
   read_conditions(root, scenario);
   apply_to_profiles(of_profiles, scenario);

@@ -6,7 +6,7 @@
 /// The keys of a scenario and of its tables.
 namespace tether::scenario {
 
-inline constexpr std::array<std::string_view, 17> kScenarioKeys = {"name",
+inline constexpr std::array<std::string_view, 19> kScenarioKeys = {"name",
                                                                    "description",
                                                                    "world",
                                                                    "step_ms",
@@ -22,7 +22,9 @@ inline constexpr std::array<std::string_view, 17> kScenarioKeys = {"name",
                                                                    "metric",
                                                                    "record",
                                                                    "radio",
-                                                                   "vary"};
+                                                                   "vary",
+                                                                   "wind",
+                                                                   "moving"};
 
 inline constexpr std::array<std::string_view, 15> kUavKeys = {"name",
                                                               "model",

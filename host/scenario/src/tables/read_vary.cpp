@@ -1,5 +1,6 @@
 #include "tables/read_vary.h"
 
+#include <algorithm>
 #include <array>
 
 #include <fmt/format.h>
@@ -44,8 +45,9 @@ std::vector<Variation> read_vary(const toml::Table& root) {
     variation.of = table.text_or("of", "");
     variation.distribution = read_distribution(table);
     variation.at = table.where();
-    const bool needs_owner =
-        variation.quantity.starts_with("model_") || variation.quantity.starts_with("sensor_");
+    const bool needs_owner = std::ranges::any_of(
+        std::array{"model_", "path_", "sensor_"},
+        [&](const char* owner) { return variation.quantity.starts_with(owner); });
     if (needs_owner && variation.of.empty()) (void)table.text("of");
     variations.push_back(std::move(variation));
   }

@@ -22,23 +22,32 @@ Dynamics::Dynamics(const World& world, const WarningSink& warn, const MeshFiles&
       meter_(world, [&](const MeshGeometry& mesh) { return meshes.corners(mesh); }) {
   meter_.warn_of_starts(warn);
   for (const Uav& uav : world.uavs)
-    flights_.push_back({{uav.airframe, world.gravity_m_s2, world.step}, {}, {}});
-  reset();
+    flights_.push_back({{uav.airframe, world.gravity_m_s2, world.step},
+                        {},
+                        {},
+                        uav::Gusts(world.wind, world.step, 0, uav.name)});
+  const std::vector<MovingBody> bodies = moving_bodies(world);
+  for (std::size_t i = 0; i < bodies.size(); ++i)
+    if (bodies[i].model && bodies[i].model->path) driven_.emplace_back(i, bodies[i]);
+  reset(0);
 }
 
-void Dynamics::reset() {
+void Dynamics::reset(std::uint64_t seed) {
   mj_resetData(model_.get(), data_.get());
   for (std::size_t i = 0; i < flights_.size(); ++i) {
     Flight& flight = flights_[i];
     const Uav& uav = world_.uavs[i];
     flight.setpoint = {};
-    flight.state = uav::hover_state(uav.airframe, world_.gravity_m_s2, yaw_rad(uav.X_WB.q));
+    flight.state = uav::hover_state(uav.airframe, world_.gravity_m_s2, yaw_rad(uav.X_WB.q),
+                                    mean_wind_W(world_.wind, uav.X_WB.p.z));
+    flight.gusts = uav::Gusts(world_.wind, world_.step, seed, uav.name);
     if (uav.energy) flight.meter.emplace(*uav.energy, uav.airframe, world_.gravity_m_s2);
   }
+  now_ = SimTime{};
+  place_driven();
   read_engine();
   recorder_.reset(X_WB_);
   contacts_.reset();
-  now_ = SimTime{};
 }
 
 void Dynamics::set_setpoint(std::size_t uav, const uav::Setpoint& setpoint) {
@@ -51,11 +60,36 @@ void Dynamics::step() {
   std::copy_n(data_->qvel, qvel_before_.size(), qvel_before_.begin());
   mj_step1(model_.get(), data_.get());
   for (std::size_t i = 0; i < flights_.size(); ++i) apply_rotors(i);
+  drive();
   mj_step2(model_.get(), data_.get());
   check_engine();
   log_contacts();
-  read_engine();
   now_ += world_.step;
+  place_driven();
+  read_engine();
+}
+
+// Puts driven bodies where they are at `now_`, with their velocities, so that what stands on them
+// is carried along.
+void Dynamics::place_driven() {
+  for (const auto& [i, body] : driven_) {
+    const DrivenState state = driven_state(body, now_);
+    mjtNum* qvel = data_->qvel + qvel_address(i);
+    copy_to(state.X_WB, data_->qpos + qpos_address(i));
+    copy_to(state.v_WB, qvel);
+    copy_to(rotate(inverse(state.X_WB.q), state.w_WB_W), qvel + 3);
+  }
+}
+
+// The forces that make the engine accelerate driven bodies as they do during this step: whatever
+// touches them is pushed by their true motion.
+void Dynamics::drive() {
+  for (const auto& [i, body] : driven_) {
+    const DrivenState state = driven_state(body, now_);
+    mjtNum* force = data_->qfrc_applied + qvel_address(i);
+    copy_to(kDrivenMass_kg * (state.a_WB + uav::Vec3{0.0, 0.0, world_.gravity_m_s2}), force);
+    copy_to(kDrivenMass_kg * rotate(inverse(state.X_WB.q), state.alpha_WB_W), force + 3);
+  }
 }
 
 // The engine has found the contacts at the beginning of the step, where X_WB_ still is. Its solver
@@ -95,8 +129,13 @@ void Dynamics::fly(std::size_t uav) {
   if (flight.meter)
     flight.multirotor.limit_rotor_speed(world_.uavs[uav].airframe.max_rotor_speed_rad_s *
                                         flight.meter->speed_limit());
-  const uav::Wrench wrench = flight.multirotor.step(body, flight.setpoint, flight.state);
-  if (flight.meter) flight.meter->step(now_, world_.step, body, flight.state);
+  const uav::Vec3 v_WA = flight.gusts.step(body.p_WB.z, body.v_WB);
+  const uav::Wrench wrench = flight.multirotor.step(body, flight.setpoint, flight.state, v_WA);
+  if (flight.meter) {
+    uav::BodyState in_air = body;
+    in_air.v_WB = body.v_WB - v_WA;
+    flight.meter->step(now_, world_.step, in_air, flight.state);
+  }
   flight.force_W = rotate(body.q_WB, wrench.force_B);
   flight.torque_W = rotate(body.q_WB, wrench.torque_B);
 }

@@ -3,16 +3,20 @@
 #include "engine.h"
 #include "mesh_file.h"
 
+#include <cstdint>
 #include <optional>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <tether/base/time.h>
+#include <tether/sim/bodies.h>
 #include <tether/sim/clearance.h>
 #include <tether/sim/contacts.h>
 #include <tether/sim/world.h>
 #include <tether/sim_sensing/state_recorder.h>
 #include <tether/uav/multirotor.h>
+#include <tether/uav/wind.h>
 
 namespace tether::sim {
 
@@ -22,8 +26,8 @@ class Dynamics {
   /// `world` must outlive this object.
   Dynamics(const World& world, const WarningSink& warn, const MeshFiles& meshes = MeshFiles());
 
-  /// Start poses, UAVs hovering, zero commands. Allocates nothing.
-  void reset();
+  /// Start poses, UAVs hovering, zero commands. `seed` keys the gusts. Allocates nothing.
+  void reset(std::uint64_t seed);
   void set_setpoint(std::size_t uav, const uav::Setpoint& setpoint);
   /// One step: controllers and rotors see the state at its beginning, the engine does the rest.
   /// Allocates nothing.
@@ -47,12 +51,15 @@ class Dynamics {
     uav::Multirotor multirotor;
     uav::Setpoint setpoint;
     uav::MultirotorState state;
+    uav::Gusts gusts;
     std::optional<energy::Meter> meter{};
     uav::Vec3 force_W{}, torque_W{};  ///< of the rotors, in this step
   };
 
   void fly(std::size_t uav);
   void apply_rotors(std::size_t uav);
+  void drive();
+  void place_driven();
   void log_contacts();
   uav::Vec3 velocity_before(int engine_body, const uav::Vec3& p_W) const;
   void check_engine() const;
@@ -62,6 +69,7 @@ class Dynamics {
   ModelPtr model_;
   DataPtr data_;
   std::vector<Flight> flights_;
+  std::vector<std::pair<std::size_t, MovingBody>> driven_;  // with their numbers
   StateRecorder recorder_;
   std::vector<uav::Pose> X_WB_;      // of each of `moving_bodies`
   std::vector<BodyMotion> motions_;  // of each UAV

@@ -50,7 +50,7 @@ class MujocoSimulator final : public Simulator {
     sensors_.reset(seed);
     now_ = SimTime{};
     stepping_ = Duration(0);
-    dynamics_.reset();
+    dynamics_.reset(seed);
   }
 
   void advance_to(SimTime t) override {

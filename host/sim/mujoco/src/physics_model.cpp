@@ -43,13 +43,13 @@ class PhysicsXml {
   PhysicsXml(const MeshFiles& meshes, const WarningSink& warn) : mesh_files_(meshes), warn_(warn) {}
 
   // The shapes of a link, at `X` in the engine's body: W for a static link, its own frame for a
-  // moving one.
-  void add_collisions(const Link& link, const Pose& X, bool is_static) {
+  // moving one. What may not be pushed meets what may.
+  void add_collisions(const Link& link, const Pose& X, bool is_static, bool may_be_pushed) {
     for (const Collision& collision : link.collisions) {
       const std::string shape = describe(collision, X * collision.X_LC, is_static);
       if (shape.empty()) continue;
       append(R"(<geom {} contype="{}" conaffinity="1" friction="{} 0.005 0.0001"/>)", shape,
-             is_static ? 0 : 1, collision.friction);
+             may_be_pushed ? 1 : 0, collision.friction);
     }
   }
 
@@ -59,10 +59,12 @@ class PhysicsXml {
     if (body.uav) {
       const uav::MultirotorParameters& frame = body.uav->airframe;
       add_inertia({link.X_LI.p, {}}, frame.mass_kg, frame.inertia_kg_m2);
+    } else if (body.model->path) {
+      add_inertia({}, kDrivenMass_kg, {kDrivenMass_kg, kDrivenMass_kg, kDrivenMass_kg});
     } else {
       add_inertia(link.X_LI, link.mass_kg, link.inertia_kg_m2);
     }
-    add_collisions(link, {}, false);
+    add_collisions(link, {}, false, body.uav || !body.model->path);
     body_ += "</body>";
   }
 
@@ -190,7 +192,7 @@ std::vector<std::string_view> shape_owners(const World& world) {
 ModelPtr make_physics_model(const World& world, const WarningSink& warn, const MeshFiles& meshes) {
   PhysicsXml xml(meshes, warn);
   for (const FixedBody& body : fixed_bodies(world)) {
-    xml.add_collisions(*body.link, body.X_WB, true);
+    xml.add_collisions(*body.link, body.X_WB, true, false);
   }
   for (const MovingBody& body : moving_bodies(world)) xml.add_moving(body);
   return compile_model(xml.text(world));

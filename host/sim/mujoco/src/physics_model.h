@@ -10,6 +10,10 @@
 
 namespace tether::sim {
 
+/// Mass of a link of a driven model, and its inertia in kg m² about each axis: so much more than
+/// that of a UAV that nothing pushes it.
+inline constexpr double kDrivenMass_kg = 1e6;
+
 /// The world as the physics engine needs it: the collision shapes only, with gravity and the step.
 /// Static links are shapes of the engine's world body; body i of `moving_bodies` has a free joint
 /// at qpos 7·i and qvel 6·i, and is the engine's body i + 1. Static shapes never meet each other.

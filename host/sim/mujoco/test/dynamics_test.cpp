@@ -122,7 +122,7 @@ TEST(DynamicsTest, AnEmptyBatteryDropsTheUav) {
   run(dynamics, 3'000);
   ASSERT_TRUE(dynamics.battery(0)->empty_at);
   EXPECT_LT(dynamics.body_state(0).p_WB.z, 0.3);
-  dynamics.reset();
+  dynamics.reset(0);
   EXPECT_FALSE(dynamics.battery(0)->empty_at);
 }
 
@@ -142,6 +142,86 @@ TEST(DynamicsTest, LooseBodiesFallAndRest) {
   EXPECT_NEAR(layout.pose_of(state, 1).p.z, 0.1, 5e-3) << "on the floor";
 }
 
+/// A platform 0.5 m above the ground that goes around in 8 s, and turns.
+World world_with_platform() {
+  World world = test_world();
+  Model platform = box_model("platform", {0.0, 0.0, 0.45}, {1.2, 1.2, 0.1}, {1.0, 0.0, 0.0}, false);
+  using std::chrono::seconds;
+  platform.path = uav::Path{{{seconds(0), {0, 0, 0}, 0.0},
+                             {seconds(2), {1, 0, 0}, 1.5},
+                             {seconds(4), {1, 1, 0.3}, 3.0},
+                             {seconds(6), {0, 1, 0}, 4.5},
+                             {seconds(8), {0, 0, 0}, 2.0 * std::numbers::pi}},
+                            true};
+  world.models.push_back(std::move(platform));
+  return world;
+}
+
+TEST(DynamicsTest, DrivenModelsFollowTheirPathWhateverTheyMeet) {
+  World world = world_with_platform();
+  world.models.push_back(
+      box_model("in_the_way", {1.0, 0.0, 0.45}, {0.4, 0.4, 0.4}, {1.0, 1.0, 1.0}));
+  world.uavs[0].X_WB.p = {0.0, 0.0, 0.5};  // inside the platform
+  Dynamics dynamics(world, [](const Warning&) {});
+  const StateLayout layout(world);
+  std::vector<double> state;
+  for (int step = 0; step < 9'000; ++step) {
+    dynamics.capture(state);
+    const SimTime now = SimTime{} + step * world.step;
+    ASSERT_EQ(layout.pose_of(state, 1), driven_state(moving_bodies(world)[1], now).X_WB) << step;
+    dynamics.step();
+  }
+}
+
+TEST(DynamicsTest, WhatStandsOnADrivenModelIsCarriedAlong) {
+  World world = world_with_platform();
+  world.uavs[0].X_WB.p = {0.2, 0.1, 0.6};
+  Dynamics dynamics(world, no_warnings());
+  uav::Setpoint off;
+  off.mask = uav::kRotorSpeeds;
+  off.rotor_speeds_rad_s.assign(world.uavs[0].airframe.rotors.size(), 0.0);
+  dynamics.set_setpoint(0, off);
+  const auto in_platform = [&](int step) {
+    const SimTime now = SimTime{} + step * world.step;
+    return transform(inverse(driven_state(moving_bodies(world)[1], now).X_WB),
+                     dynamics.body_state(0).p_WB);
+  };
+  run(dynamics, 500);
+  const uav::Vec3 landed = in_platform(500);
+  run(dynamics, 7'500);
+  EXPECT_LT(norm(in_platform(8'000) - landed), 0.01);
+}
+
+// It leans as much to stand in the wind as to fly as fast through still air.
+TEST(DynamicsTest, WindDragsAsTheUavsOwnMotionThroughTheAir) {
+  World world = test_world();
+  world.uavs[0].airframe.linear_drag_N_s_m = 0.5;
+  world.uavs[0].X_WB.p.z = 5.0;
+  World windy = world;
+  windy.wind.v_WA_m_s = {2.0, -1.0, 0.0};
+  Dynamics still(world, no_warnings()), dynamics(windy, no_warnings());
+  run(dynamics, 20'000);
+  EXPECT_LT(norm(dynamics.body_state(0).v_WB), 5e-3) << "the controller holds it";
+  still.set_setpoint(0, uav::to_setpoint({{-2.0, 1.0, 0.0}, 0.0}));
+  run(still, 20'000);
+  const uav::Vec3 ahead = rotate(dynamics.body_state(0).q_WB, {0.0, 0.0, 1.0});
+  EXPECT_LT(norm(ahead - rotate(still.body_state(0).q_WB, {0.0, 0.0, 1.0})), 5e-3);
+  EXPECT_LT(ahead.x, -0.02) << "it leans into the wind";
+}
+
+TEST(DynamicsTest, GustsDependOnTheSeedAlone) {
+  World world = test_world();
+  world.wind = {.v_WA_m_s = {3.0, 0.0, 0.0}, .turbulence = 1.0};
+  const auto flown = [&](std::uint64_t seed) {
+    Dynamics dynamics(world, no_warnings());
+    dynamics.reset(seed);
+    run(dynamics, 1'000);
+    return dynamics.body_state(0).p_WB;
+  };
+  EXPECT_EQ(flown(1), flown(1));
+  EXPECT_NE(flown(1), flown(2));
+}
+
 TEST(DynamicsTest, ResetRestoresEverything) {
   World world = test_world();
   std::get<CameraModel>(world.uavs[0].sensors[testing::kCamera].model).exposure_s = 0.02;
@@ -150,7 +230,7 @@ TEST(DynamicsTest, ResetRestoresEverything) {
   dynamics.capture(fresh);
   dynamics.set_setpoint(0, uav::to_setpoint({{1.0, 0.0, 0.0}, 1.0}));
   run(dynamics, 500);
-  dynamics.reset();
+  dynamics.reset(0);
   std::vector<double> again;
   dynamics.capture(again);
   EXPECT_EQ(again, fresh);

@@ -77,6 +77,11 @@ protocol::Open make_open(const World& world, const WarningSink& warn) {
         .about(world.name);
   }
   require_remote_cameras(world);
+  if (!world.wind.is_calm())
+    warn({Consequence::kBehavesDifferent,
+          {world.file.string()},
+          "<wind>",
+          "is simulated by the embedded simulator only; here the air stands still"});
   const ViewSize size = largest_view(world);
   protocol::Open open;
   open.world_name = world.name;

@@ -101,7 +101,7 @@ void read_step(const SdfSource& source, const sdf::World& sdf_world, World& worl
   }
 }
 
-void read_earth(const SdfSource& source, const sdf::World& sdf_world, World& world) {
+void read_earth_and_air(const SdfSource& source, const sdf::World& sdf_world, World& world) {
   if (const auto* place = sdf_world.SphericalCoordinates()) {
     world.place = Place{place->LatitudeReference().Degree(), place->LongitudeReference().Degree(),
                         place->ElevationReference(), place->HeadingOffset().Radian()};
@@ -112,6 +112,7 @@ void read_earth(const SdfSource& source, const sdf::World& sdf_world, World& wor
       refuse(source, frame, "is not ENU, the only orientation that Tether knows");
   }
   world.magnetic_field_T = to_vec3(sdf_world.MagneticField());
+  world.wind.v_WA_m_s = to_vec3(sdf_world.WindLinearVelocity());
 }
 
 void read_scene(const sdf::Scene* scene, World& world) {
@@ -140,7 +141,7 @@ World read_world(const SdfSource& source, const WarningSink& warn) {
   world.name = sdf_world.Name();
   world.gravity_m_s2 = read_gravity(source, sdf_world);
   read_step(source, sdf_world, world);
-  read_earth(source, sdf_world, world);
+  read_earth_and_air(source, sdf_world, world);
   for (std::uint64_t i = 0; i < sdf_world.ModelCount(); ++i) {
     add_model(source, *sdf_world.ModelByIndex(i), {}, "", false, warn, world);
     warn_of_lost_motion(source, *sdf_world.ModelByIndex(i), false, warn);

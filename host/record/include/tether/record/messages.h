@@ -254,14 +254,26 @@ struct RawImage {
 using Message = std::variant<Interaction, CommandEffect, GroundTruth, Annotation, Stop, Contact,
                              Battery, RadioMessage, Image, RawImage>;
 
+/// Of uav::Path.
+struct Waypoint {
+  Duration at{0};
+  double p_m[3] = {};
+  double yaw_rad = 0.0;
+};
 /// An entity of the world that is known in advance (frame A), in the world frame W.
 struct Anchor {
   std::string name;
   std::string shape;
   double size_m[3] = {};
-  double p_WA_m[3] = {};
+  double p_WA_m[3] = {};  ///< of its centre, as the world's file places it
   double q_WA[4] = {1, 0, 0, 0};
+  std::vector<Waypoint> path{};  ///< uav::Path of its model; empty: it stands still
+  bool path_repeats = false;
+  Duration path_delay{0};
+  double p_WO_m[3] = {};  ///< about which the path turns it; only with a path
 };
+/// Where it is at that instant, as an anchor without a path.
+Anchor anchor_at(const Anchor& anchor, SimTime at);
 /// Mounting and intrinsics of a camera, for projections into its images.
 struct CameraInfo {
   double p_BS_m[3] = {};  ///< mounting in the UAV's body B; S is body-style (x forward)

@@ -108,6 +108,13 @@ struct UavSetup {
   Sut sut;  ///< its own, or the scenario's; own parameters override the scenario's
 };
 
+/// A model of the world, with those nested in it, that moves along a path, whatever it meets.
+struct MovingModel {
+  std::string model;
+  uav::Path path;
+  FileLocation at{};
+};
+
 /// Replaces a value of a scenario file.
 struct Setting {
   /// Path of a key that the file has, from its top or from [[condition]] or [[uav]]:
@@ -125,6 +132,9 @@ inline constexpr std::string_view kUavCount = "uavs";
 /// "KEY=VALUE", as an option. A VALUE that is a file in `folder` becomes an absolute path.
 /// @throws Error(kUsage), about the text, if it has no key or no value.
 Setting parse_setting(std::string_view text, const std::filesystem::path& folder);
+
+/// No run is longer.
+inline constexpr double kLongestRun_s = 7 * 24 * 3600.0;
 
 /// Softer contacts are landings: UAVs descend at less.
 inline constexpr double kHardContact_m_s = 0.5;
@@ -144,9 +154,12 @@ struct Scenario {
   Duration connect_limit{std::chrono::seconds(30)};  ///< of WT until every SUT has joined
   /// A contact that is harder misses the goal (record::Contact::speed_m_s); inf: none does.
   double max_contact_speed_m_s = kHardContact_m_s;
-  std::vector<Computer> computers{};    ///< [[target]]s
-  std::vector<UavSetup> uavs;           ///< at least one
-  radio::Settings radio{};              ///< between them
+  std::vector<Computer> computers{};  ///< [[target]]s
+  std::vector<UavSetup> uavs;         ///< at least one
+  radio::Settings radio{};            ///< between them
+  std::optional<uav::Wind> wind{};    ///< none: that of the world
+  FileLocation wind_at{};
+  std::vector<MovingModel> moving{};
   std::vector<Variation> variations{};  ///< what differs from flight to flight
   std::vector<std::string> anchors;
   FileLocation anchors_at{};          ///< of their key; empty: there is none
@@ -265,10 +278,23 @@ std::vector<std::vector<uav::SensorTiming>> resolve_sensors(const Scenario& scen
                                                             sim::World& world,
                                                             const sim::WarningSink& warn);
 
+/// Gives `world` the scenario's wind, if it has one, and its models their paths, with those that
+/// are nested in them. `is_read_elsewhere`: an external simulator reads the world's file itself.
+/// @throws Error(kBadFile) at the table: it names no model, or the simulator would not simulate it.
+void resolve_motion(const Scenario& scenario, bool is_read_elsewhere, sim::World& world);
+
 /// Gives `world` the scenario's step, if it has one.
 /// @throws Error(kBadFile) at the key if the scenario's period of the ground truth is shorter than
 /// the step. @pre as of `resolve_sensors`.
 void resolve_step(const Scenario& scenario, sim::World& world);
+
+/// What a flight with this seed makes of a world: everything below, in the order that they need.
+struct Resolved {
+  std::vector<std::vector<uav::SensorTiming>> timings;  ///< of `resolve_sensors`
+  std::vector<Varied> varied;
+};
+Resolved resolve_world(const Scenario& scenario, const Condition& condition, std::uint64_t seed,
+                       bool is_read_elsewhere, sim::World& world, const sim::WarningSink& warn);
 
 /// Gives the UAVs of `world` their models of energy, with the power of the condition's computer.
 /// @throws Error(kBadFile) with file and line, about "rotor" or "battery", if the battery cannot

@@ -19,6 +19,17 @@ struct MovingBody {
 /// The UAVs in order, then the links of the dynamic models in order. Refers into `world`.
 std::vector<MovingBody> moving_bodies(const World& world);
 
+/// What drives a link of a driven model: its motion at an instant of ST.
+struct DrivenState {
+  uav::Pose X_WB;
+  uav::Vec3 v_WB;        ///< [m/s]
+  uav::Vec3 w_WB_W;      ///< about z [rad/s]
+  uav::Vec3 a_WB;        ///< [m/s²]
+  uav::Vec3 alpha_WB_W;  ///< [rad/s²]
+};
+/// @pre the body's model has a path
+DrivenState driven_state(const MovingBody& body, SimTime at);
+
 /// A link of a static model, with its fixed pose. Refers into the world.
 struct FixedBody {
   const Link* link = nullptr;

@@ -16,6 +16,8 @@
 #include <tether/uav/catalogue.h>
 #include <tether/uav/math.h>
 #include <tether/uav/multirotor.h>
+#include <tether/uav/path.h>
+#include <tether/uav/wind.h>
 
 /// The scene for every back end: the content of the SDF files with everything resolved (poses in W,
 /// files found, units SI).
@@ -105,6 +107,9 @@ struct Model {
   uav::Pose X_WM;
   bool is_static = false;  ///< a dynamic model's links are free bodies; joints are warned about
   std::vector<Link> links;
+  /// Of a driven model, which is dynamic: it moves so from `X_WM` on, whatever it meets.
+  std::optional<uav::Path> path{};
+  uav::Vec3 p_WO{};  ///< about which the path turns it: the origin of its outermost model
 };
 
 enum class LightKind { kPoint, kDirectional, kSpot };
@@ -255,6 +260,7 @@ struct World {
   FileLocation step_at{};             ///< where; empty: nobody does
   std::optional<Place> place{};       ///< none: the world does not say; Place's own values are used
   uav::Vec3 magnetic_field_T{6e-6, 2.3e-5, -4.2e-5};  ///< in W; SDF's
+  uav::Wind wind;                                     ///< acts on UAVs
   uav::Vec3 ambient_rgb{0.4, 0.4, 0.4};
   uav::Vec3 background_rgb{0.7, 0.7, 0.7};
   std::vector<Model> models;

@@ -99,8 +99,10 @@ const ElementTable kElements = {
 };
 
 /// Elements that only a world or only a UAV's model may have.
-const ElementTable kWorldElements = {{"link", {"light"}}};
-const ElementTable kUavElements = {{"link", {"sensor"}}, {"model", {"tether:multirotor", "joint"}}};
+const ElementTable kWorldElements = {
+    {"link", {"light"}}, {"world", {"wind"}}, {"wind", {"linear_velocity"}}};
+const ElementTable kUavElements = {{"link", {"sensor", "enable_wind"}},
+                                   {"model", {"tether:multirotor", "joint", "enable_wind"}}};
 
 /// Elements that change nothing of what is simulated: windows, topics, pacing, and what SDF demands
 /// but other elements already imply.

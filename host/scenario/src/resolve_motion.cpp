@@ -1,0 +1,71 @@
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include <tether/base/suggest.h>
+#include <tether/scenario/scenario.h>
+
+namespace tether::scenario {
+namespace {
+
+[[noreturn]] void fail(const FileLocation& at, const std::string& table, const std::string& problem,
+                       const std::string& about) {
+  throw Error(ErrorCode::kBadFile, at, table + " " + problem).about(about);
+}
+
+/// Models that are nested in it belong to it.
+bool is_part_of(const sim::Model& model, const std::string& name) {
+  return model.name == name || model.name.starts_with(name + "::");
+}
+
+void drive(const MovingModel& moving, sim::World& world) {
+  const auto model = std::ranges::find(world.models, moving.model, &sim::Model::name);
+  if (model == world.models.end()) {
+    std::vector<std::string_view> names;
+    for (const sim::Model& one : world.models) names.push_back(one.name);
+    fail(moving.at, "[[moving]]",
+         fmt::format("names the model '{}', which the world does not have; {}", moving.model,
+                     allowed_hint(moving.model, names)),
+         moving.model);
+  }
+  const uav::Vec3 p_WO = model->X_WM.p;
+  for (sim::Model& part : world.models) {
+    if (!is_part_of(part, moving.model)) continue;
+    part.is_static = false;
+    part.path = moving.path;
+    part.p_WO = p_WO;
+  }
+}
+
+}  // namespace
+
+void resolve_motion(const Scenario& scenario, bool is_read_elsewhere, sim::World& world) {
+  const auto refuse = [](const FileLocation& at, const std::string& table) {
+    fail(at, table,
+         "needs the embedded simulator: an external one reads the world's file itself, and is not "
+         "told of this",
+         table);
+  };
+  if (scenario.wind) {
+    if (is_read_elsewhere) refuse(scenario.wind_at, "[wind]");
+    world.wind = *scenario.wind;
+  }
+  for (const MovingModel& moving : scenario.moving) {
+    if (is_read_elsewhere) refuse(moving.at, "[[moving]]");
+    drive(moving, world);
+  }
+}
+
+Resolved resolve_world(const Scenario& scenario, const Condition& condition, std::uint64_t seed,
+                       bool is_read_elsewhere, sim::World& world, const sim::WarningSink& warn) {
+  Resolved resolved;
+  resolve_motion(scenario, is_read_elsewhere, world);
+  resolved.varied = vary(scenario.variations, seed, is_read_elsewhere, world);
+  resolve_step(scenario, world);
+  resolve_energy(scenario, condition, world, warn);
+  resolved.timings = resolve_sensors(scenario, condition, world, warn);
+  vary_mountings(scenario.variations, resolved.varied, world);
+  return resolved;
+}
+
+}  // namespace tether::scenario

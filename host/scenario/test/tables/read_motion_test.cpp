@@ -1,0 +1,83 @@
+#include "tables/read_motion.h"
+
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <tether/base/units.h>
+#include <tether/base_testing/thrown_error.h>
+
+namespace tether::scenario {
+namespace {
+
+using ::testing::HasSubstr;
+
+Scenario motion_of(const std::string& text) {
+  Scenario scenario;
+  read_motion(toml::Document::parse(text, "s.toml").root(), scenario);
+  return scenario;
+}
+
+constexpr const char* kMoving = R"([[moving]]
+model = "cart"
+repeats = true
+waypoint = [ { at_s = 0, offset_m = [0, 0, 0] },
+             { at_s = 2.5, offset_m = [1, 2, 0], yaw_deg = 180 },
+             { at_s = 4, offset_m = [0, 0, 0], yaw_deg = 360 } ]
+)";
+
+TEST(ReadMotion, ReadsWindAndPaths) {
+  const Scenario scenario = motion_of(std::string(kMoving) +
+                                      "[wind]\nvelocity_m_s = [3, -1, 0]\nroughness_m = 0.1\n"
+                                      "turbulence = 0.5\n");
+  EXPECT_EQ(*scenario.wind, (uav::Wind{{3.0, -1.0, 0.0}, 0.1, 0.5}));
+  ASSERT_EQ(scenario.moving.size(), 1U);
+  EXPECT_EQ(scenario.moving[0].model, "cart");
+  EXPECT_TRUE(scenario.moving[0].path.repeats);
+  EXPECT_EQ(scenario.moving[0].path.waypoints[1],
+            (uav::Waypoint{std::chrono::milliseconds(2500), {1, 2, 0}, rad_from_deg(180.0)}));
+}
+
+TEST(ReadMotion, RefusesWhatCannotMove) {
+  const auto problem = [](const std::string& text) {
+    return bad_file_error([&] { motion_of(text); }).what();
+  };
+  const std::string start = "[[moving]]\nmodel = \"cart\"\nwaypoint = [ { at_s = 1, ";
+  EXPECT_THAT(problem(start + "offset_m = [0, 0, 0] } ]"), HasSubstr("two waypoints"));
+  EXPECT_THAT(problem(start + "offset_m = [0, 0] } ]"), HasSubstr("offset_m"));
+  EXPECT_THAT(problem(start + "offset_m = [nan, 0, 0] } ]"), HasSubstr("offset_m"));
+  EXPECT_THAT(problem(std::string(kMoving) + kMoving), HasSubstr("another [[moving]]"));
+  EXPECT_THAT(problem("[wind]\nvelocity_m_s = [0, 0, 1]\nturbulence = 1"),
+              HasSubstr("no effect without a wind"));
+  EXPECT_THAT(problem("[wind]\nvelocity_m_s = [100, 0, 0]"), HasSubstr("velocity_m_s"));
+}
+
+sim::World house_and_cart() {
+  sim::World world;
+  world.models = {{"cart", {}, true, {{}}}, {"house", {}, true, {}}, {"house::door", {}, true, {}}};
+  return world;
+}
+
+TEST(ResolveMotion, DrivesTheNamedModelAndWhatIsNestedInIt) {
+  sim::World driven = house_and_cart();
+  driven.models[2].name = "cart::load";
+  resolve_motion(motion_of(kMoving), false, driven);
+  EXPECT_FALSE(driven.models[0].is_static);
+  EXPECT_TRUE(driven.models[0].path.has_value());
+  EXPECT_TRUE(driven.models[1].is_static);
+  EXPECT_TRUE(driven.models[2].path.has_value()) << "nested";
+}
+
+TEST(ResolveMotion, RefusesAModelThatItCannotDrive) {
+  const auto problem = [](Scenario scenario, const std::string& model, bool is_read_elsewhere) {
+    sim::World of_file = house_and_cart();
+    scenario.moving[0].model = model;
+    return bad_file_error([&] { resolve_motion(scenario, is_read_elsewhere, of_file); }).what();
+  };
+  EXPECT_THAT(problem(motion_of(kMoving), "kart", false), HasSubstr("did you mean 'cart'"));
+  EXPECT_THAT(problem(motion_of(kMoving), "cart", true), HasSubstr("embedded simulator"));
+}
+
+}  // namespace
+}  // namespace tether::scenario
