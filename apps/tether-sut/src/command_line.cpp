@@ -64,6 +64,7 @@ constexpr Example kExamples[] = {
     {"hold", "--duration-s 5"},
     {"inspect", "--anchor blue_box --distance-m 1.5 --duration-s 10"},
     {"land", "--speed-m-s 0.3"},
+    {"land_on", "--anchor platform --descent-m-s 0.4"},
     {"search_pair", "--anchor blue_box"},
     {"mission", "look_around.toml"},
     {"characterize", "--camera /dev/video0 --range iio:vl53l0x --out bench.toml"},

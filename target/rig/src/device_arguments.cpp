@@ -23,6 +23,7 @@ std::string* imu_of(TaskSpec& spec) {
   if (auto* way = std::get_if<tasks::GoToOptions>(&spec.options)) return &way->imu;
   if (auto* hold = std::get_if<tasks::HoldOptions>(&spec.options)) return &hold->imu;
   if (auto* land = std::get_if<tasks::LandOptions>(&spec.options)) return &land->imu;
+  if (auto* land_on = std::get_if<tasks::LandOnOptions>(&spec.options)) return &land_on->imu;
   return nullptr;
 }
 

@@ -43,6 +43,9 @@ struct TaskMaker {
   TaskPointer operator()(const tasks::InspectOptions& options) const {
     return std::make_unique<tasks::InspectTask>(spec.anchor, options);
   }
+  TaskPointer operator()(const tasks::LandOnOptions& options) const {
+    return std::make_unique<tasks::LandOnTask>(spec.anchor, options);
+  }
   TaskPointer operator()(const tasks::LandOptions& options) const {
     return std::make_unique<tasks::LandTask>(options);
   }

@@ -197,9 +197,28 @@ Fields fields(tasks::InspectOptions& options, TaskSpec& spec) {
          degrees(options.bearing_tolerance_rad, 0.01, 90.0)},
         speed(options.speed_m_s),
         {"yaw_rate_deg_s", "Maximum yaw rate", degrees(options.yaw_rate_rad_s, 0.01, 720.0)},
+        {"yaw_gain_per_s", "Yaw rate for each radian of the bearing",
+         plain(options.yaw_gain_per_s, 0.01, 20.0)},
+        {"speed_gain_per_s", "Speed for each metre of the distance's error",
+         plain(options.speed_gain_per_s, 0.01, 20.0)},
         {"lost_limit_s", "Maximum time without seeing the anchor", seconds(options.lost_limit)},
         {"least_charge", "It ends below this share of the battery's capacity; 0: not read",
          share(options.least_charge)},
+        time_limit(options.time_limit)}});
+}
+
+Fields fields(tasks::LandOnOptions& options, TaskSpec& spec) {
+  return joined(
+      {vision_fields(spec),
+       {speed(options.speed_m_s),
+        {"descent_m_s", "Speed of the descent", plain(options.descent_m_s, 0.05, 2.0)},
+        {"gain_per_s", "Speed for each metre beside the anchor",
+         plain(options.gain_per_s, 0.01, 20.0)},
+        {"commit_height_m", "Height below which the UAV sinks without looking",
+         plain(options.commit_height_m, 0.0, 100.0)},
+        {"range", "Rangefinder that looks down", TextField{&options.range}},
+        imu(options.imu),
+        {"lost_limit_s", "Maximum time without seeing the anchor", seconds(options.lost_limit)},
         time_limit(options.time_limit)}});
 }
 
@@ -241,6 +260,7 @@ std::span<const TaskKind> task_kinds() {
       TaskKind{"hold", "Hover for a time", tasks::HoldOptions{}},
       TaskKind{"inspect", "Keep the anchor ahead at a distance for a time",
                tasks::InspectOptions{}},
+      TaskKind{"land_on", "Land on an anchor, which may move", tasks::LandOnOptions{}},
       TaskKind{"land", "Descend until the UAV stands", tasks::LandOptions{}},
       TaskKind{"search_pair", "Turn until this UAV or another one sees the anchor; the other comes",
                tasks::SearchPairOptions{}}};

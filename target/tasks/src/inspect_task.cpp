@@ -8,13 +8,6 @@
 #include <tether/tasks/task_context.h>
 
 namespace tether::tasks {
-namespace {
-
-// Commands for each unit of the error.
-constexpr double kYawGain_per_s = 1.5;
-constexpr double kSpeedGain_per_s = 0.8;
-
-}  // namespace
 
 InspectTask::InspectTask(std::string anchor, const InspectOptions& options)
     : anchor_(std::move(anchor)),
@@ -54,9 +47,9 @@ Progress InspectTask::step(TaskContext& context) {
   distance_m_ = (*sight)->position.distance_m;
   const double too_far_m = *distance_m_ - options_.distance_m;
   const double speed_m_s =
-      std::clamp(kSpeedGain_per_s * too_far_m, -options_.speed_m_s, options_.speed_m_s);
-  const double yaw_rate_rad_s =
-      std::clamp(kYawGain_per_s * *bearing_rad_, -options_.yaw_rate_rad_s, options_.yaw_rate_rad_s);
+      std::clamp(options_.speed_gain_per_s * too_far_m, -options_.speed_m_s, options_.speed_m_s);
+  const double yaw_rate_rad_s = std::clamp(options_.yaw_gain_per_s * *bearing_rad_,
+                                           -options_.yaw_rate_rad_s, options_.yaw_rate_rad_s);
   const Status moving =
       context.vehicle().command_velocity({speed_m_s * level(*bearing_rad_), yaw_rate_rad_s});
   if (!moving) return TaskOutcome::failed(moving.failure());

@@ -13,6 +13,7 @@
 #include <tether/tasks/go_to_task.h>
 #include <tether/tasks/hold_task.h>
 #include <tether/tasks/inspect_task.h>
+#include <tether/tasks/land_on_task.h>
 #include <tether/tasks/land_task.h>
 #include <tether/tasks/move_forward_task.h>
 #include <tether/tasks/relative_position_task.h>
@@ -28,7 +29,8 @@ using TaskOptions =
     std::variant<tasks::SensorCharacterizationOptions, tasks::RelativePositionOptions,
                  tasks::FaceAnchorOptions, tasks::MoveForwardOptions, tasks::ClosedPathOptions,
                  tasks::GoToOptions, tasks::SearchOptions, tasks::HoldOptions,
-                 tasks::InspectOptions, tasks::LandOptions, tasks::SearchPairOptions>;
+                 tasks::InspectOptions, tasks::LandOptions, tasks::LandOnOptions,
+                 tasks::SearchPairOptions>;
 
 struct TaskSpec {
   TaskOptions options;

@@ -17,6 +17,8 @@ struct InspectOptions {
   double bearing_tolerance_rad = rad_from_deg(6.0);  ///< > 0
   double speed_m_s = 0.5;                            ///< maximum; > 0
   double yaw_rate_rad_s = rad_from_deg(40.0);        ///< maximum; > 0
+  double yaw_gain_per_s = 1.5;                       ///< yaw rate for each radian; > 0
+  double speed_gain_per_s = 0.8;                     ///< speed for each metre; > 0
   Duration lost_limit = std::chrono::seconds(3);     ///< without seeing the anchor; "anchor lost"
   Duration time_limit = std::chrono::seconds(60);    ///< of the SUT's clock; then "time limit"
   int max_images = 100'000;                          ///< in case that clock is stopped
@@ -25,7 +27,7 @@ struct InspectOptions {
 
 /// Keeps the anchor straight ahead at a distance, until it was within the tolerances of both for a
 /// time without a break. Each image leads to one command, in proportion to what it shows, so that a
-/// slow computer makes the UAV swing. Without the anchor in sight, it hovers.
+/// slow computer makes the UAV swing. The anchor may move. Without the anchor in sight, it hovers.
 ///
 /// Results: "duration_s" (ET), "images", "held_s" (the longest time within the tolerances),
 /// "bearing_rad" and "distance_m" (the last ones).
