@@ -138,14 +138,13 @@ Plan make_plan(const SizeOptions& options) {
 }
 
 int code_of(const report::SizeReport& report) {
-  const sizing::Answer& answer = report.synchronised.answer;
-  const bool is_answered =
+  const bool is_good =
       report.boards.empty()
-          ? answer.is_narrow && !answer.is_below && !report::has_unseen_time(report)
+          ? report::is_answered(report)
           : std::ranges::all_of(report.boards, [&](const report::Board& board) {
-              return report::verdict(board, report.synchronised) == report::BoardVerdict::kSuffices;
+              return report::verdict(board, report) == report::BoardVerdict::kSuffices;
             });
-  return is_answered ? 0 : 1;
+  return is_good ? 0 : 1;
 }
 
 int find_size(const SizeOptions& options, const std::stop_token& stop) {

@@ -21,6 +21,7 @@
 #include <tether/base/counted.h>
 #include <tether/base/error.h>
 #include <tether/os/program.h>
+#include <tether/os/shell_word.h>
 #include <tether/os/terminal.h>
 #include <tether/os/text_file.h>
 #include <tether/report/gnuplot.h>
@@ -194,10 +195,10 @@ void SizeTrials::show(const campaign::CampaignProgress& progress, const Question
 
 int SizeTrials::say_why(End end) const {
   for (const std::string& line : not_flown_) complain("tether: " + line);
-  const std::string again =
-      fmt::format("tether size {}{} --out {} --resume, with the options of this call",
-                  options_.scenario.string(), options_.axis == "uavs" ? " --axis uavs" : "",
-                  folder_.path().string());
+  const std::string again = fmt::format(
+      "tether size {}{} --out {} --resume, with the options of this call",
+      os::shell_word(options_.scenario.string()), options_.axis == "uavs" ? " --axis uavs" : "",
+      os::shell_word(folder_.path().string()));
   if (end == End::kUndecidable)
     say("tether: no flight shows whether the computer is fast enough: all {} reached the goal of "
         "the program, but {}. Correct that, or remove the limit.\n",

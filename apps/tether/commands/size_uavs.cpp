@@ -12,9 +12,11 @@
 
 #include <fmt/format.h>
 
+#include <tether/os/program.h>
 #include <tether/report/size_report.h>
 #include <tether/report/uavs_report.h>
 #include <tether/scenario/campaign.h>
+#include <tether/scenario/shipped_files.h>
 
 namespace tether::app {
 
@@ -129,7 +131,9 @@ int find_uavs(const SizeOptions& options, const std::stop_token& stop) {
   const scenario::Condition condition = scenario::pick_condition(all, options.condition);
   require_shared_board(condition, all.name);
   const scenario::Computer& board = condition.computers[condition.seats.front().computer];
+  const auto shipped = scenario::ShippedFiles::of_program(os::own_file());
   report::UavsReport report{.scenario = all.name,
+                            .named = shipped.name_of(scenario::ShippedKind::kScenario, all.file),
                             .condition = condition.name,
                             .board = board.name,
                             .cores = board.cores,
@@ -151,11 +155,7 @@ int find_uavs(const SizeOptions& options, const std::stop_token& stop) {
       {report::uavs_answers(report), report::uavs_advice(report), report::uavs_json(report),
        report::uavs_plot(report), report::uavs_page(report), report::to_junit(report, out)},
       out, options.junit);
-  const bool is_unseen = std::ranges::any_of(report.points, [](const report::UavsPoint& point) {
-    return std::ranges::any_of(point.trials, &campaign::TrialResult::has_unseen_time);
-  });
-  const bool carries = report.answer.carried >= report.question.least;
-  return report.answer.is_decided() && carries && !is_unseen ? 0 : 1;
+  return report::is_answered(report) ? 0 : 1;
 }
 
 }  // namespace tether::app

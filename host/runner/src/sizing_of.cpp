@@ -7,18 +7,6 @@
 #include <tether/scenario/slowness.h>
 
 namespace tether::runner {
-namespace {
-
-std::string name_of(const std::filesystem::path& scenario, const scenario::ShippedFiles& shipped) {
-  std::error_code failed;
-  return std::filesystem::equivalent(shipped.folder() / "scenarios" / scenario.filename(), scenario,
-                                     failed)
-             ? scenario.stem().string()
-             : scenario.string();
-}
-
-}  // namespace
-
 std::optional<campaign::Sizing> sizing_of(const TrialSpec& spec,
                                           const scenario::ShippedFiles& shipped) try {
   if (!spec.scenario.settings.empty() || spec.scenario.has_laid_profile || spec.waits_for_sut)
@@ -31,8 +19,9 @@ std::optional<campaign::Sizing> sizing_of(const TrialSpec& spec,
                                               : moved_from.empty() ? spec.condition.name
                                                                    : moved_from);
   if (spec.condition.simulator != slower.simulator) return std::nullopt;
-  campaign::Sizing sizing{.scenario = name_of(spec.scenario.file, shipped),
-                          .condition = slower.name};
+  campaign::Sizing sizing{
+      .scenario = shipped.name_of(scenario::ShippedKind::kScenario, spec.scenario.file),
+      .condition = slower.name};
   if (!moved_from.empty()) {
     const auto& target = computer_of(spec.condition, 0).target;
     if (is_slowed || !target || target->file.empty() || !slower.seats.empty()) return std::nullopt;

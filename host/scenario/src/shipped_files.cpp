@@ -110,6 +110,12 @@ fs::path ShippedFiles::file_of(ShippedKind kind, const std::string& name) const 
   return data_ / place_of(kind).folder / (name + place_of(kind).extension);
 }
 
+std::string ShippedFiles::name_of(ShippedKind kind, const fs::path& file) const {
+  std::error_code failed;
+  return fs::equivalent(file_of(kind, file.stem().string()), file, failed) ? file.stem().string()
+                                                                           : file.string();
+}
+
 bool ShippedFiles::has(ShippedKind kind, const std::string& name) const {
   std::error_code ignored;
   return fs::is_regular_file(file_of(kind, name), ignored);

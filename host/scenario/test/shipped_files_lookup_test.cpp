@@ -30,6 +30,12 @@ TEST_F(ShippedFilesLookup, FindsAPathOrElseAShippedFileOfThatName) {
     EXPECT_EQ(shipped_.find(ShippedKind::kScenario, path), path);
 }
 
+TEST_F(ShippedFilesLookup, NamesAFileForACommandLineInAnyFolder) {
+  EXPECT_EQ(shipped_.name_of(ShippedKind::kScenario, hover_), "hover");
+  const auto own = folder_.write("own/hover.toml", "");
+  EXPECT_EQ(shipped_.name_of(ShippedKind::kScenario, own), own.string());
+}
+
 TEST_F(ShippedFilesLookup, RefusesANameOfNoFileAndNamesTheNearestOfTheSameKind) {
   const auto refusal = [&](ShippedKind kind, const std::string& given) {
     const Error error = thrown_error(ErrorCode::kUsage, [&] { shipped_.find(kind, given); });

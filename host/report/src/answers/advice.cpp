@@ -1,3 +1,4 @@
+#include "answers/sufficient.h"
 #include "tables/report_format.h"
 
 #include <algorithm>
@@ -133,8 +134,7 @@ std::string sentence_of(const Advice& advice, const Verdict& verdict) {
     case Kind::kQuietMachine:
       return "Fly again while nothing else runs on the machine, or with a counted clock.";
     case Kind::kVarySeeds:
-      return "More flights show nothing new, because the seeds change nothing. Give the sensors "
-             "noise or delays that vary (a profile), or let the world or the start vary.";
+      return kVarySeeds;
     case Kind::kFindThreshold:
       return threshold_advice(lead) + uavs_advice(lead);
     case Kind::kFlyMore:

@@ -56,11 +56,14 @@ bool is_usual_loader(const std::string& loader) {
   return name.starts_with("ld-linux") || name.starts_with("ld-musl");
 }
 
+bool is_of_other_architecture(const Speed::Program& one, const Speed::Program& other) {
+  return one.loader != other.loader && is_usual_loader(one.loader) && is_usual_loader(other.loader);
+}
+
 /// Of another architecture, it must be another build.
 bool is_same_program(const Speed::Program& one, const Speed::Program& other) {
   return (one.build == other.build && one.libraries == other.libraries) ||
-         (one.loader != other.loader && is_usual_loader(one.loader) &&
-          is_usual_loader(other.loader));
+         is_of_other_architecture(one, other);
 }
 
 /// A program may choose its instructions, and more, by the emulated CPU.
@@ -234,6 +237,15 @@ std::string comparison_text(const Compared& other, const Compared& missed) {
                                  : "");
 }
 
+/// @pre differ_in_speed_only
+MissReason compared(Evidence evidence, const Compared& other, const Compared& missed,
+                    std::string text = "") {
+  const auto& own = missed.pace()->speed.programs;
+  const bool is_of_other_build =
+      !std::ranges::equal(own, other.pace()->speed.programs, std::not_fn(is_of_other_architecture));
+  return {evidence, other.label, std::move(text), is_of_other_build};
+}
+
 MissReason reason_of(const Compared& missed, const std::vector<Compared>& all,
                      std::size_t comparisons) {
   std::vector<const Compared*> faster;
@@ -246,7 +258,7 @@ MissReason reason_of(const Compared& missed, const std::vector<Compared>& all,
   const bool is_comparable = missed.pace() && !missed.pace()->speed.stretches_unseen_waits();
   for (const Compared* other : faster)
     if (is_comparable && reaches_more_often(*other->verdict, *missed.verdict, comparisons))
-      return {Evidence::kFasterReaches, other->label, comparison_text(*other, missed)};
+      return compared(Evidence::kFasterReaches, *other, missed, comparison_text(*other, missed));
   if (const std::string cause = in_each(missed, known_cause); !cause.empty())
     return {Evidence::kKnownCause, "", cause};
   if (is_instant(missed)) return {Evidence::kInstant};
@@ -263,13 +275,13 @@ MissReason reason_of(const Compared& missed, const std::vector<Compared>& all,
   });
   for (const Compared* other : faster) {
     if (some_speed_suffices || !other->verdict->is_missed()) continue;
-    if (is_instant(*other)) return {Evidence::kInstantMissesToo, other->label};
+    if (is_instant(*other)) return compared(Evidence::kInstantMissesToo, *other, missed);
     if (other->pace()->keeps_up() && is_much_faster(*other, missed))
-      return {Evidence::kFasterMissesToo, other->label};
+      return compared(Evidence::kFasterMissesToo, *other, missed);
   }
   if (!faster.empty())
-    return {Evidence::kFasterUndecided, faster.front()->label,
-            comparison_text(*faster.front(), missed)};
+    return compared(Evidence::kFasterUndecided, *faster.front(), missed,
+                    comparison_text(*faster.front(), missed));
   if (const std::string cause = in_each(missed, possible_cause); !cause.empty())
     return {Evidence::kPossibleCause, "", cause};
   return {};

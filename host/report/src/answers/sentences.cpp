@@ -100,12 +100,17 @@ constexpr std::array kMissReasons = {
 
 std::string reason_text(const MissReason& reason) {
   return fmt::format(fmt::runtime(kMissReasons[static_cast<std::size_t>(reason.evidence)]),
-                     fmt::arg("condition", reason.condition), fmt::arg("text", reason.text));
+                     fmt::arg("condition", reason.condition), fmt::arg("text", reason.text)) +
+         (reason.is_of_other_build
+              ? " Its program is another build, for another architecture: what differs between the "
+                "builds can be part of the reason."
+              : "");
 }
 
 /// One for each campaign::Doubt::Kind: of a UAV or a machine.
 constexpr std::array kDoubts = {
-    "the program of {subject} waited {amount:.2g} s on something that Tether does not see",
+    "the program of {subject} waited up to about {amount:.2g} s on something that Tether does not "
+    "see",
     "threads of the program of {subject} computed in parallel ({amount:.1f} × the wall time), but "
     "their times are added",
     "the program of {subject} waited {amount:.2g} s for the disk, or for a process that it started "

@@ -1,3 +1,4 @@
+#include "answers/success_gap.h"
 #include "answers/sufficient.h"
 #include "tables/report_format.h"
 
@@ -62,11 +63,57 @@ std::string reservation(const SizedCondition& sized) {
   return leaves_out ? std::string(kNotAsWritten) + ";" : ",";
 }
 
+/// Whether the answer is above slowdowns that fail.
+bool is_above_gap(const SizeReport& report) {
+  const std::optional<SuccessGap> gap = success_gap(report);
+  const sizing::Answer& answer = report.synchronised.answer;
+  return gap && !answer.is_below &&
+         (answer.is_above || answer.threshold.estimate > gap->fails.from);
+}
+
+double low_of(const Board& board) {
+  return board.low.value_or(board.slowdown);
+}
+double high_of(const Board& board) {
+  return board.high.value_or(board.slowdown);
+}
+
+/// Whether the board is as slow as slowdowns that fail while slower ones succeed, or slower.
+bool reaches(const Board& board, const std::optional<SuccessGap>& gap) {
+  return gap && high_of(board) >= gap->fails.from;
+}
+
+/// On what the answer rests: "95 %; 92 flights.".
+std::string evidence_of(const SizeReport& report) {
+  const std::size_t flights = report.synchronised.flights.size();
+  if (is_one_start(report.synchronised))
+    return fmt::format(
+        "at {}. The seeds change nothing, so this is one flight at several speeds, "
+        "and what others do is not known.",
+        counted(flights, "slowdown"));
+  return fmt::format("{}; {}.", percent(report.question.confidence), counted(flights, "flight"));
+}
+
+std::string band_text(const Band& band) {
+  return fmt::format("{} of {} at {:.3g}{} ×", band.flights.of_them,
+                     counted(band.flights.all, "flight"), band.from,
+                     band.from < band.to ? fmt::format(" to {:.3g}", band.to) : "");
+}
+
+Answer gap_answer(const SuccessGap& gap, const SizeReport& report) {
+  return {"Slower computers reach the goal again",
+          fmt::format(": {} reach it, but {}. {}", band_text(gap.fails), band_text(gap.again),
+                      is_above_gap(report) ? "The limit that follows is too high: slowdowns below "
+                                             "it fail."
+                                           : "The limit that follows is below those that fail.")};
+}
+
 Answer main_answer(const SizeReport& report) {
   const SizedCondition& sized = report.synchronised;
   const sizing::Threshold& threshold = sized.answer.threshold;
-  const std::string evidence = fmt::format("{}; {}.", percent(report.question.confidence),
-                                           counted(sized.flights.size(), "flight"));
+  const bool is_one = is_one_start(sized);
+  const std::string evidence = evidence_of(report);
+  const std::string in_one = is_one ? "In one flight, sufficient up to " : "Sufficient up to ";
   if (sized.answer.is_below) {
     const bool is_for_speed = speed_matters(sized);
     const bool is_known = is_for_speed || is_probably_not_for_speed(report);
@@ -83,33 +130,26 @@ Answer main_answer(const SizeReport& report) {
                                        "do not reach it more often.")};
   }
   if (sized.answer.is_above)
-    return {"Sufficient up to " + slower(report.question.most),
+    return {in_one + slower(report.question.most),
             fmt::format(" {} “{}”, the most that was flown{} {}", than(report.question.most),
                         sized.condition, reservation(sized), evidence)};
-  return {"Sufficient up to " + slower(threshold.estimate),
-          fmt::format(" {} “{}” {}{} {}", than(threshold.estimate), sized.condition,
-                      interval_text(threshold, report.question), reservation(sized), evidence)};
+  const std::string interval = is_one ? "" : " " + interval_text(threshold, report.question);
+  return {in_one + slower(threshold.estimate),
+          fmt::format(" {} “{}”{}{} {}", than(threshold.estimate), sized.condition, interval,
+                      reservation(sized), evidence)};
 }
 
-Answer board_answer(const Board& board, const SizedCondition& sized) {
-  const sizing::Answer& answer = sized.answer;
-  const double headroom = answer.threshold.estimate / board.slowdown;
-  const std::string name = fmt::format("{} ({} ×)", board.name, digits(board.slowdown));
-  switch (verdict(board, sized)) {
-    case BoardVerdict::kSuffices:
-      return {"Fast enough", fmt::format(": {} has {}{} × headroom.", name,
-                                         answer.is_above ? "at least " : "", digits(headroom))};
-    case BoardVerdict::kDoesNot:
-      return {"Not fast enough",
-              fmt::format(": {} is {}{} × too slow.", name, answer.is_below ? "more than " : "",
-                          digits(1.0 / headroom))};
-    case BoardVerdict::kUndecided:
-      break;
-  }
-  return {"Undecided", fmt::format(": {} may not be fast enough, because {}.", name,
-                                   answer.is_above   ? "no flight was as slow as that"
-                                   : answer.is_below ? "the flights do not show that speed matters"
-                                                     : "it is too close to the limit")};
+/// Why it is not known whether the board is fast enough.
+std::string why_undecided(const Board& board, const SizeReport& report) {
+  const sizing::Answer& answer = report.synchronised.answer;
+  if (has_unseen_time(report))
+    return "programs waited or computed in ways that Tether does not see";
+  if (is_one_start(report.synchronised)) return "the seeds change nothing: this is one flight";
+  if (reaches(board, success_gap(report)))
+    return "success does not fall steadily with the slowdown";
+  if (answer.is_above) return "no flight was as slow as that";
+  return answer.is_below ? "the flights do not show that speed matters"
+                         : "it is too close to the limit";
 }
 
 Answer flattery(const SizeReport& report) {
@@ -135,19 +175,48 @@ std::vector<CurvePoint> curve_points(const sizing::SuccessCurve& curve, double l
   return points;
 }
 
-BoardVerdict verdict(const Board& board, const SizedCondition& sized) {
+BoardVerdict verdict(const Board& board, const SizeReport& report) {
+  const SizedCondition& sized = report.synchronised;
   const sizing::Answer& answer = sized.answer;
-  if (std::ranges::any_of(sized.trials, &campaign::TrialResult::has_unseen_time) ||
-      (answer.is_below && !speed_matters(sized)))
+  if (has_unseen_time(report) || is_one_start(sized) || (answer.is_below && !speed_matters(sized)))
     return BoardVerdict::kUndecided;
-  const double low = board.low.value_or(board.slowdown), high = board.high.value_or(board.slowdown);
-  if (high <= answer.threshold.low && !answer.is_below) return BoardVerdict::kSuffices;
-  if (low >= answer.threshold.high && !answer.is_above) return BoardVerdict::kDoesNot;
+  const std::optional<SuccessGap> gap = success_gap(report);
+  const bool reaches_gap = reaches(board, gap);
+  if (high_of(board) <= answer.threshold.low && !answer.is_below && !reaches_gap)
+    return BoardVerdict::kSuffices;
+  const bool may_succeed = reaches_gap && high_of(board) > gap->fails.to;
+  if (low_of(board) >= answer.threshold.high && !answer.is_above && !may_succeed)
+    return BoardVerdict::kDoesNot;
   return BoardVerdict::kUndecided;
+}
+
+Answer board_answer(const Board& board, const SizeReport& report) {
+  const sizing::Answer& answer = report.synchronised.answer;
+  const double headroom = answer.threshold.estimate / board.slowdown;
+  const std::string name = fmt::format("{} ({} ×)", board.name, digits(board.slowdown));
+  switch (verdict(board, report)) {
+    case BoardVerdict::kSuffices:
+      return {"Fast enough", fmt::format(": {} has {}{} × headroom.", name,
+                                         answer.is_above ? "at least " : "", digits(headroom))};
+    case BoardVerdict::kDoesNot:
+      return {"Not fast enough",
+              fmt::format(": {} is {}{} × too slow.", name, answer.is_below ? "more than " : "",
+                          digits(1.0 / headroom))};
+    case BoardVerdict::kUndecided:
+      break;
+  }
+  return {"Undecided", fmt::format(": {} may not be fast enough, because {}.", name,
+                                   why_undecided(board, report))};
 }
 
 bool has_unseen_time(const SizeReport& report) {
   return std::ranges::any_of(report.synchronised.trials, &campaign::TrialResult::has_unseen_time);
+}
+
+bool is_answered(const SizeReport& report) {
+  const SizedCondition& sized = report.synchronised;
+  return sized.answer.is_narrow && !sized.answer.is_below && !is_one_start(sized) &&
+         !is_above_gap(report) && !has_unseen_time(report);
 }
 
 std::vector<Answer> size_answers(const SizeReport& report) {
@@ -156,9 +225,10 @@ std::vector<Answer> size_answers(const SizeReport& report) {
   for (const campaign::TrialResult& trial : report.synchronised.trials) trials.push_back(&trial);
   if (auto unseen = unseen_answer(report.synchronised.condition, trials))
     return {*std::move(unseen)};
-  std::vector<Answer> answers = {main_answer(report)};
-  for (const Board& board : report.boards)
-    answers.push_back(board_answer(board, report.synchronised));
+  std::vector<Answer> answers;
+  if (const auto gap = success_gap(report)) answers.push_back(gap_answer(*gap, report));
+  answers.push_back(main_answer(report));
+  for (const Board& board : report.boards) answers.push_back(board_answer(board, report));
   if (report.unsynchronised) answers.push_back(flattery(report));
   if (answer.basis == sizing::Basis::kLevels)
     answers.push_back(
@@ -199,10 +269,17 @@ std::vector<std::string> size_advice(const SizeReport& report) {
     return {
         "Find out what the program waits for, or which threads it has: fly one flight with "
         "`tether run`, which says what to do."};
-  if (!answer.is_narrow) advice.emplace_back("Fly more: `--max-trials`, with `--resume`.");
+  const bool is_exhausted = !answer.is_narrow && report.synchronised.copies >= kMostCopies;
+  if (is_exhausted || is_one_start(report.synchronised))
+    advice.emplace_back(kVarySeeds);
+  else if (!answer.is_narrow)
+    advice.emplace_back("Fly more: `--max-trials`, with `--resume`.");
+  if (success_gap(report))
+    advice.emplace_back(
+        "Look at the figure, and fly slowdowns that fail again with `tether run --slowdown`.");
   const bool is_short =
       answer.is_below || std::ranges::any_of(report.boards, [&](const Board& board) {
-        return verdict(board, report.synchronised) == BoardVerdict::kDoesNot;
+        return verdict(board, report) == BoardVerdict::kDoesNot;
       });
   // Where the flights do not show that speed matters, no stage is to blame.
   const bool has_limit =
@@ -268,6 +345,13 @@ bool add_flight(SizedCondition& to, const campaign::TrialResult& trial, double s
   to.flights.push_back(flight_of(trial, slowdown));
   to.trials.push_back(trial);
   return false;
+}
+
+bool is_one_start(const SizedCondition& sized) {
+  std::vector<double> slowdowns;
+  for (const sizing::Flight& flight : sized.flights) slowdowns.push_back(flight.slowdown);
+  std::ranges::sort(slowdowns);
+  return sized.copies > 0 && std::ranges::adjacent_find(slowdowns) == slowdowns.end();
 }
 
 bool speed_matters(const SizedCondition& sized) {

@@ -24,7 +24,7 @@ std::optional<Answer> sufficient_factor(const std::string& what, const ByFactor&
   if (next == flown.begin()) return std::nullopt;
   const auto& [factor, largest] = *std::prev(next);
   const bool is_one_flight =
-      std::all_of(flown.begin(), next, [](const auto& one) { return one.second->flown == 1; });
+      std::all_of(flown.begin(), next, [](const auto& one) { return one.second->distinct == 1; });
   const bool is_as_written = std::all_of(flown.begin(), next, [](const auto& one) {
     return one.second->left_out.empty() && one.second->uncharged.empty();
   });

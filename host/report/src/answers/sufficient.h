@@ -18,6 +18,11 @@ std::string other_settings(const Verdict& point);
 /// factor up to which it is fast enough. @pre the points are of one scenario; not empty.
 std::vector<Answer> sufficient_factors(const std::vector<Verdict>& points);
 
+/// What to do if all flights are one.
+inline constexpr const char* kVarySeeds =
+    "More flights show nothing new, because the seeds change nothing. Give the sensors noise or "
+    "delays that vary (a profile), or let the world or the start vary.";
+
 /// Whether what the flight left out can change its verdict, and is not only a doubtful start.
 bool is_left_out(const Warning& warning);
 inline constexpr const char* kNotAsWritten = ", but not everything is simulated as written";

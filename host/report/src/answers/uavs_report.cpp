@@ -1,3 +1,4 @@
+#include "answers/sufficient.h"
 #include "tables/report_format.h"
 
 #include <algorithm>
@@ -112,6 +113,13 @@ std::size_t flights_of(const UavsReport& report) {
   return flights;
 }
 
+bool is_answered(const UavsReport& report) {
+  const bool is_unseen = std::ranges::any_of(report.points, [](const UavsPoint& point) {
+    return std::ranges::any_of(point.trials, &campaign::TrialResult::has_unseen_time);
+  });
+  return report.answer.is_decided() && report.answer.carried >= report.question.least && !is_unseen;
+}
+
 std::vector<Answer> uavs_answers(const UavsReport& report) {
   std::vector<const campaign::TrialResult*> trials;
   for (const UavsPoint& point : report.points)
@@ -152,7 +160,10 @@ std::size_t copies_in(const UavsReport& report) {
 std::vector<std::string> uavs_advice(const UavsReport& report) {
   std::vector<std::string> advice;
   const sizing::UavAnswer& answer = report.answer;
-  if (!answer.is_decided()) advice.emplace_back("Fly more: `--max-trials`, with `--resume`.");
+  if (!answer.is_decided())
+    advice.emplace_back(copies_in(report) >= kMostCopies
+                            ? kVarySeeds
+                            : "Fly more: `--max-trials`, with `--resume`.");
   if (answer.is_decided() && answer.carried == report.question.most)
     advice.emplace_back(
         "To find the limit, add UAVs to the scenario, or fly more of them with `--between`.");
@@ -163,7 +174,7 @@ std::vector<std::string> uavs_advice(const UavsReport& report) {
     if (!is_for_sharing)
       advice.push_back(fmt::format(
           "Look at what the added UAV does: `tether run {} --condition {} --set uavs={}`",
-          os::shell_word(report.scenario), os::shell_word(report.condition), answer.too_many));
+          os::shell_word(report.named), os::shell_word(report.condition), answer.too_many));
     if (const auto& pace = report.pace.pace; is_for_sharing && pace && !pace->stages.empty())
       advice.push_back(fmt::format(
           "To carry {}, speed up “{}” first: it takes {:.0f} % of the computing time.",
@@ -172,7 +183,7 @@ std::vector<std::string> uavs_advice(const UavsReport& report) {
     advice.push_back(
         fmt::format("To see whether a faster board carries all, and how much faster: `tether "
                     "size {} --condition {} --between 0.1,2`",
-                    os::shell_word(report.scenario), os::shell_word(report.condition)));
+                    os::shell_word(report.named), os::shell_word(report.condition)));
   }
   return advice;
 }

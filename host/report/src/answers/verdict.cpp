@@ -40,6 +40,14 @@ bool is_count_at_limit(const campaign::MetricValue& metric) {
   return metric.unit == "1" && metric.value && limit && *metric.value == *limit && *limit != 0.0;
 }
 
+/// "time required ≤ 5 s"
+std::string limited(const campaign::MetricValue& metric) {
+  const std::string label = in_a_sentence(metric.label);
+  if (!metric.max && !metric.min) return label;
+  return fmt::format("{} {}{}", label, metric.max ? "≤ " + exact(*metric.max) : limit_text(metric),
+                     metric.unit == "1" ? "" : " " + metric.unit);
+}
+
 /// What of the flight missed its limit. Empty: at most metrics without a value.
 std::vector<std::string> missed_in(const campaign::TrialResult& trial) {
   std::vector<std::string> missed;
@@ -52,10 +60,7 @@ std::vector<std::string> missed_in(const campaign::TrialResult& trial) {
   for (const judge::ClauseVerdict& clause : trial.clauses)
     if (!clause.met) missed.push_back(fmt::format("“{}”", clause.name));
   for (const campaign::MetricValue& metric : trial.metrics)
-    if (metric.value && !metric.is_met())
-      missed.push_back(fmt::format("{} {}{}", in_a_sentence(metric.label),
-                                   metric.max ? "≤ " + exact(*metric.max) : limit_text(metric),
-                                   metric.unit == "1" ? "" : " " + metric.unit));
+    if (metric.value && !metric.is_met()) missed.push_back(limited(metric));
   const auto has_missed = [](const campaign::SutResult& sut) { return !sut.reached_goal; };
   if (const auto sut = std::ranges::find_if(trial.suts, has_missed);
       missed.empty() && sut != trial.suts.end())
@@ -63,6 +68,13 @@ std::vector<std::string> missed_in(const campaign::TrialResult& trial) {
                                             : "the program's own goal") +
                      (sut->outcome.empty() ? "" : ": " + sut->outcome));
   return missed;
+}
+
+/// The metric without a value for which alone the flight missed its goal; nullptr: there is none.
+const campaign::MetricValue* missed_for_no_value(const campaign::TrialResult& trial) {
+  if (trial.outcome != campaign::Outcome::kGoalMissed || !missed_in(trial).empty()) return nullptr;
+  const auto found = std::ranges::find_if_not(trial.metrics, &campaign::MetricValue::is_met);
+  return found == trial.metrics.end() ? nullptr : &*found;
 }
 
 bool has_limit(const campaign::TrialResult& trial) {
@@ -362,12 +374,10 @@ std::vector<Verdict> rule(std::vector<Verdict> verdicts,
 }  // namespace
 
 std::string missed_without_value(const campaign::TrialResult& trial) {
-  if (trial.outcome != campaign::Outcome::kGoalMissed || !missed_in(trial).empty()) return "";
-  for (const campaign::MetricValue& metric : trial.metrics)
-    if (!metric.is_met())
-      return fmt::format("{} has no value: {}", in_a_sentence(metric.label),
-                         metric.missing_because);
-  return "";
+  const campaign::MetricValue* const metric = missed_for_no_value(trial);
+  return metric == nullptr ? ""
+                           : fmt::format("{} has no value: {}", in_a_sentence(metric->label),
+                                         metric->missing_because);
 }
 
 MissedLimits missed_limits(std::span<const campaign::TrialResult* const> trials) {
@@ -375,8 +385,8 @@ MissedLimits missed_limits(std::span<const campaign::TrialResult* const> trials)
   for (const campaign::TrialResult* trial : trials) {
     if (trial->outcome != campaign::Outcome::kGoalMissed) continue;
     std::vector<std::string> limits = missed_in(*trial);
-    if (limits.empty()) limits = {missed_without_value(*trial)};
-    std::erase(limits, "");
+    if (const campaign::MetricValue* const metric = missed_for_no_value(*trial))
+      limits = {fmt::format("{} (no value: {})", limited(*metric), metric->missing_because)};
     for (const std::string& limit : limits) {
       const auto known = std::ranges::find(all, limit, &MissedLimits::value_type::first);
       if (known == all.end())

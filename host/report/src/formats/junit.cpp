@@ -72,7 +72,7 @@ Case metric_case(const campaign::TrialResult& trial, const campaign::MetricValue
   fail(one, trial,
        metric.value ? fmt::format("{}{} is beyond its limit of {}{}", *metric.value, unit,
                                   limit_text(metric), unit)
-                    : metric.missing_because);
+                    : "no value: " + metric.missing_because);
   return one;
 }
 
@@ -200,6 +200,7 @@ std::string to_junit(const campaign::CampaignResults& results,
 std::string to_junit(const SizeReport& report, const std::filesystem::path& folder) {
   const std::vector<std::string> sentences = size_sentences(report);
   Suite suite{.name = "size of " + report.scenario};
+  suite.properties = {{"verdict", sentences.front()}};
   double time_s = 0.0;
   for (const campaign::TrialResult& trial : report.synchronised.trials) {
     add_start(suite, trial);
@@ -215,12 +216,12 @@ std::string to_junit(const SizeReport& report, const std::filesystem::path& fold
                            .message = is_passed ? "" : sentence,
                            .output = sentence + "\nflights: " + folder.string() + "\n"});
   };
-  add("answer", "answer", report.synchronised.answer.is_narrow,
-      fmt::format("{}", fmt::join(sentences, "\n")));
-  for (std::size_t i = 0; i < report.boards.size(); ++i)
-    add(report.boards[i].name, "board",
-        verdict(report.boards[i], report.synchronised) == BoardVerdict::kSuffices,
-        sentences[1 + i]);
+  add("answer", "answer", is_answered(report), fmt::format("{}", fmt::join(sentences, "\n")));
+  for (const Board& board : report.boards) {
+    const Answer answer = board_answer(board, report);
+    add(board.name, "board", verdict(board, report) == BoardVerdict::kSuffices,
+        answer.lead + answer.rest);
+  }
   return text_of(std::vector<Suite>{suite});
 }
 
@@ -232,8 +233,10 @@ std::string to_junit(const UavsReport& report, const std::filesystem::path& fold
       add_start(suite, trial);
       answer.time_s += to_seconds(trial.this_run.wall);
     }
-  for (const Answer& one : uavs_answers(report)) answer.output += one.lead + one.rest + "\n";
-  if (!report.answer.is_decided()) {
+  const std::vector<Answer> answers = uavs_answers(report);
+  suite.properties = {{"verdict", answers.front().lead + answers.front().rest}};
+  for (const Answer& one : answers) answer.output += one.lead + one.rest + "\n";
+  if (!is_answered(report)) {
     answer.kind = "failure";
     answer.message = answer.output;
   }

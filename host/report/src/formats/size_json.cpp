@@ -57,11 +57,11 @@ Json json_of(const SizedCondition& sized) {
   return json;
 }
 
-Json json_of(const Board& board, const SizedCondition& sized) {
+Json json_of(const Board& board, const SizeReport& report) {
   Json json = {{"name", board.name},
                {"slowdown", board.slowdown},
-               {"headroom", sized.answer.threshold.estimate / board.slowdown},
-               {"verdict", kVerdicts[static_cast<std::size_t>(verdict(board, sized))]}};
+               {"headroom", report.synchronised.answer.threshold.estimate / board.slowdown},
+               {"verdict", kVerdicts[static_cast<std::size_t>(verdict(board, report))]}};
   if (board.low) json["calibration"] = {*board.low, *board.high};
   return json;
 }
@@ -81,8 +81,7 @@ std::string size_json(const SizeReport& report) {
                  {"max_trials", report.most_flights}}}};
   json.update(json_of(report.synchronised));
   json["boards"] = Json::array();
-  for (const Board& board : report.boards)
-    json["boards"].push_back(json_of(board, report.synchronised));
+  for (const Board& board : report.boards) json["boards"].push_back(json_of(board, report));
   if (report.unsynchronised) json["unsynchronised"] = json_of(*report.unsynchronised);
   json["not_flown"] = report.not_flown;
   json["settings"] = report.settings;

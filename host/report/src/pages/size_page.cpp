@@ -38,7 +38,7 @@ Table boards_table(const SizeReport& report) {
         {board.name, times_text(board.slowdown),
          board.low ? fmt::format("{} to {}", times_text(*board.low), times_text(*board.high)) : "–",
          fmt::format("{:.2g}", answer.threshold.estimate / board.slowdown),
-         verdict_text(verdict(board, report.synchronised))});
+         verdict_text(verdict(board, report))});
   }
   return table;
 }

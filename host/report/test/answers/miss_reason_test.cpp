@@ -113,6 +113,8 @@ TEST_F(MissReasons, AreSpeedIfAFasterConditionReachesTheGoal) {
   expect_unknown("only one architecture is known");
   program(host).loader = "library ld-linux-x86-64.so.2";
   EXPECT_EQ(ruling(board), Ruling::kNotFastEnough) << "the build of another architecture";
+  EXPECT_THAT(answers_of({verdict()})[0].rest,
+              HasSubstr("Its program is another build, for another architecture"));
   program(board).loader = "library ld-mine.so.2";
   expect_unknown("another library under a loader of its own");
   program(board).loader = program(host).loader = "";

@@ -25,8 +25,10 @@ TEST(SizeReport, SaysWhenTheAnswerIsOutsideTheRange) {
   SizeReport report = sample_size();
   report.synchronised.answer.is_above = true;
   EXPECT_THAT(size_sentences(report)[0], HasSubstr("Sufficient up to 10 × slower"));
+  report.question.least = 0.1;
   report.question.most = 0.8;
   EXPECT_THAT(size_sentences(report)[0], HasSubstr("up to 0.8 × the computing time of “target”,"));
+  report.question = sample_size().question;
   report.synchronised.answer.is_above = false;
   report.synchronised.answer.is_below = true;
   EXPECT_THAT(size_sentences(report)[0], HasSubstr("Not sufficient: already at 1 ×"));
@@ -40,19 +42,19 @@ TEST(SizeReport, SaysThatABoundIsOutsideTheRange) {
               HasSubstr("0.6 × the computing time of “target” [below 1, above 10]"));
   report.boards = {{"slow", 20.0}, {"fast", 0.1}};
   for (const Board& board : report.boards)
-    EXPECT_EQ(verdict(board, report.synchronised), BoardVerdict::kUndecided);
+    EXPECT_EQ(verdict(board, report), BoardVerdict::kUndecided);
 }
 
 TEST(SizeReport, HasNoAnswerIfTimePassesUnseen) {
   SizeReport report = sample_size();
   report.boards = {{"fast", 0.1}};
-  EXPECT_EQ(verdict(report.boards[0], report.synchronised), BoardVerdict::kSuffices);
+  EXPECT_EQ(verdict(report.boards[0], report), BoardVerdict::kSuffices);
   report.synchronised.trials.resize(2);
   report.synchronised.trials[1].this_run.doubts = {
       {campaign::Doubt::Kind::kUnseenWait, "uav1", 0.4}};
   EXPECT_THAT(size_sentences(report),
               ElementsAre(HasSubstr("No answer: the program of uav1 waited")));
-  EXPECT_EQ(verdict(report.boards[0], report.synchronised), BoardVerdict::kUndecided);
+  EXPECT_EQ(verdict(report.boards[0], report), BoardVerdict::kUndecided);
 }
 
 TEST(SizeReport, SaysWhatLimitsTheAnswer) {
@@ -102,26 +104,27 @@ TEST(SizeReport, NamesTheResultThatDoesNotHaveComputingTimes) {
 }
 
 TEST(SizeReport, ABoardSufficesIfAllOfItsCalibrationDoes) {
-  SizedCondition sized;
+  SizeReport report;
+  SizedCondition& sized = report.synchronised;
   sizing::Answer& answer = sized.answer;
   answer.threshold = {3.1, 2.7, 3.6};
-  EXPECT_EQ(verdict({"a", 2.6}, sized), BoardVerdict::kSuffices);
-  EXPECT_EQ(verdict({"a", 2.6, 2.5, 2.8}, sized), BoardVerdict::kUndecided);
-  EXPECT_EQ(verdict({"a", 3.0}, sized), BoardVerdict::kUndecided);
-  EXPECT_EQ(verdict({"a", 3.7, 3.5, 4.0}, sized), BoardVerdict::kUndecided);
-  EXPECT_EQ(verdict({"a", 3.7}, sized), BoardVerdict::kDoesNot);
+  EXPECT_EQ(verdict({"a", 2.6}, report), BoardVerdict::kSuffices);
+  EXPECT_EQ(verdict({"a", 2.6, 2.5, 2.8}, report), BoardVerdict::kUndecided);
+  EXPECT_EQ(verdict({"a", 3.0}, report), BoardVerdict::kUndecided);
+  EXPECT_EQ(verdict({"a", 3.7, 3.5, 4.0}, report), BoardVerdict::kUndecided);
+  EXPECT_EQ(verdict({"a", 3.7}, report), BoardVerdict::kDoesNot);
   answer = {};
   answer.is_above = true;
   answer.threshold = {10.0, 10.0, std::numeric_limits<double>::infinity()};
-  EXPECT_EQ(verdict({"a", 10.0}, sized), BoardVerdict::kSuffices);
-  EXPECT_EQ(verdict({"a", 11.0}, sized), BoardVerdict::kUndecided);
+  EXPECT_EQ(verdict({"a", 10.0}, report), BoardVerdict::kSuffices);
+  EXPECT_EQ(verdict({"a", 11.0}, report), BoardVerdict::kUndecided);
   answer = {};
   answer.is_below = true;
   answer.threshold = {1.0, 0.0, 1.0};
-  EXPECT_EQ(verdict({"a", 1.0}, sized), BoardVerdict::kUndecided) << "whether speed matters";
+  EXPECT_EQ(verdict({"a", 1.0}, report), BoardVerdict::kUndecided) << "whether speed matters";
   for (int i = 0; i < 10; ++i) sized.flights.push_back({1.0 + i, i < 5, std::nullopt});
-  EXPECT_EQ(verdict({"a", 1.0}, sized), BoardVerdict::kDoesNot);
-  EXPECT_EQ(verdict({"a", 0.5}, sized), BoardVerdict::kUndecided);
+  EXPECT_EQ(verdict({"a", 1.0}, report), BoardVerdict::kDoesNot);
+  EXPECT_EQ(verdict({"a", 0.5}, report), BoardVerdict::kUndecided);
 }
 
 TEST(SizeReport, BlamesSpeedOnlyIfFasterFlightsReachTheGoalMoreOften) {
@@ -146,6 +149,52 @@ TEST(SizeReport, DoesNotCountCopies) {
   EXPECT_EQ(sized.copies, 1u);
   EXPECT_EQ(sized.trials.size(), 11u);
   EXPECT_THAT(size_sentences(report), Contains(HasSubstr("Not counted: 1 flight more, ")));
+}
+
+// All are one flight at several speeds.
+TEST(SizeReport, ClaimsNoMoreThanOneFlightIfTheSeedsChangeNothing) {
+  SizeReport report = sample_size();
+  EXPECT_TRUE(is_answered(report));
+  report.synchronised.copies = 1;
+  EXPECT_EQ(size_sentences(report)[0],
+            "In one flight, sufficient up to 3.1 × slower than “target”, at 10 slowdowns. The "
+            "seeds change nothing, so this is one flight at several speeds, and what others do is "
+            "not known.");
+  EXPECT_EQ(size_sentences(report)[1],
+            "Undecided: pi.toml (1.9 ×) may not be fast enough, because the seeds change nothing: "
+            "this is one flight.");
+  EXPECT_FALSE(is_answered(report));
+  EXPECT_THAT(size_advice(report), Contains(HasSubstr("let the world or the start vary")));
+  report.synchronised.flights[1].slowdown = report.synchronised.flights[0].slowdown;
+  EXPECT_TRUE(is_answered(report)) << "two flights at one slowdown differ";
+}
+
+TEST(SizeReport, SaysFirstThatSlowerComputersReachTheGoalAgain) {
+  SizeReport report = sample_size();
+  SizedCondition& sized = report.synchronised;
+  const auto fly = [&](double slowdown, bool reached) {
+    sized.flights.insert(sized.flights.end(), 6, {slowdown, reached, std::nullopt});
+    sized.trials.insert(sized.trials.end(), 6, sized.trials[0]);
+  };
+  fly(3.82, false);
+  fly(6.2, false);
+  EXPECT_EQ(size_sentences(report)[0].substr(0, 10), "Sufficient");
+  fly(7.1, true);
+  report.boards = {{"fast", 2.0}, {"slow", 3.9}, {"slower", 8.0}};
+  EXPECT_THAT(
+      size_sentences(report)[0],
+      testing::AllOf(testing::StartsWith("Slower computers reach the goal again: 0 of "),
+                     HasSubstr("but 6 of 6 flights at "),
+                     testing::EndsWith("The limit that follows is below those that fail.")));
+  EXPECT_THAT(size_sentences(report)[1], testing::StartsWith("Sufficient up to 3.1"));
+  EXPECT_EQ(verdict(report.boards[0], report), BoardVerdict::kSuffices);
+  EXPECT_EQ(verdict(report.boards[1], report), BoardVerdict::kDoesNot);
+  EXPECT_EQ(verdict(report.boards[2], report), BoardVerdict::kUndecided);
+  EXPECT_TRUE(is_answered(report));
+  sized.answer.threshold = {7.1, 7.0, 7.4};
+  EXPECT_THAT(size_sentences(report)[0], HasSubstr("The limit that follows is too high"));
+  EXPECT_EQ(verdict(report.boards[1], report), BoardVerdict::kUndecided);
+  EXPECT_FALSE(is_answered(report));
 }
 
 campaign::MetricValue limited(double value, std::optional<double> max, std::optional<double> min) {

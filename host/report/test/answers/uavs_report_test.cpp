@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <tether/report/size_report.h>
 #include <tether/report/uavs_report.h>
 
 namespace tether::report {
@@ -13,6 +14,7 @@ using testing::StartsWith;
 /// Of up to four UAVs: the flights with each number of them, and how many reach the goal.
 UavsReport report_of(const std::vector<sizing::UavLevel>& levels) {
   UavsReport report{.scenario = "four",
+                    .named = "/tests/four.toml",
                     .condition = "one for all",
                     .board = "obc",
                     .question = {.most = 4},
@@ -51,6 +53,14 @@ TEST(UavsReport, AnswersFirst) {
       "reach the goal and with 3 UAVs 0 of 2; 95 %; 38 flights.");
 }
 
+TEST(UavsReport, AdvisesToVaryWhatTheSeedsDoNotChange) {
+  UavsReport report = report_of({{1, kMostCopies + 1, kMostCopies + 1}});
+  for (campaign::TrialResult& trial : report.points[0].trials) trial.flight_digest = "01";
+  report.answer = sizing::answer_by_uavs(report.question, uav_levels(report.points));
+  EXPECT_THAT(uavs_advice(report), testing::Contains(HasSubstr("the seeds change nothing")));
+  EXPECT_FALSE(is_answered(report));
+}
+
 TEST(UavsReport, SaysWhatSharingCostsAndWhatToDo) {
   UavsReport report = report_of({{2, 36, 36}, {3, 2, 0}});
   report.pace.pace = Pace{.stages = {{.stage = "detect", .share = 0.8}},
@@ -81,7 +91,7 @@ TEST(UavsReport, DoesNotBlameTheBoardIfHardlyAProgramWaitsForCores) {
   EXPECT_EQ(uavs_answers(report).front().lead,
             "Goal missed with 2 UAVs; that they share the board is probably not the reason");
   EXPECT_THAT(uavs_advice(report)[0],
-              StartsWith("Look at what the added UAV does: `tether run four"));
+              StartsWith("Look at what the added UAV does: `tether run /tests/four.toml "));
   for (const std::string& advice : uavs_advice(report))
     EXPECT_THAT(advice, testing::Not(HasSubstr("speed up")));
   report.pace.pace->shared_board.clear();

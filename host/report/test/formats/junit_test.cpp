@@ -10,6 +10,7 @@
 #include <tether/report/junit.h>
 #include <tether/report/page.h>
 #include <tether/report/timing_page.h>
+#include <tether/report/uavs_report.h>
 
 namespace tether::report {
 namespace {
@@ -87,15 +88,34 @@ TEST_F(Junit, HasASuiteForEachConditionOfACampaign) {
                           "outcome: error", "Oscillations: error", "Time required: error"));
 }
 
-TEST_F(Junit, OfASizeHasACaseForTheAnswerAndEachBoard) {
+/// The property "verdict" of the only suite.
+std::string verdict_in(const XMLElement& all) {
+  const XMLElement* property =
+      all.FirstChildElement()->FirstChildElement("properties")->FirstChildElement();
+  EXPECT_STREQ(property->Attribute("name"), "verdict");
+  return property->Attribute("value");
+}
+
+TEST_F(Junit, OfASizeHasTheVerdictAndACaseForTheAnswerAndEachBoard) {
   SizeReport report = sample_size();
   report.boards.push_back({"old.toml", 9.0, {}, {}});
   const XMLElement& all = suites(to_junit(report, out_));
+  EXPECT_THAT(verdict_in(all), StartsWith("Sufficient up to 3.1 × slower"));
   EXPECT_THAT(cases_of(*all.FirstChildElement()),
               ElementsAre("answer", "pi.toml", "old.toml: failure"));
-  report.synchronised.answer.is_narrow = false;
-  EXPECT_EQ(cases_of(*suites(to_junit(report, out_)).FirstChildElement()).front(),
-            "answer: failure");
+  report.synchronised.trials[1].this_run.doubts = {
+      {campaign::Doubt::Kind::kUnseenWait, "uav1", 0.4}};
+  const XMLElement& unseen = suites(to_junit(report, out_));
+  EXPECT_THAT(verdict_in(unseen), StartsWith("No answer: the program of uav1 waited up to about"));
+  EXPECT_THAT(cases_of(*unseen.FirstChildElement()),
+              ElementsAre("answer: failure", "pi.toml: failure", "old.toml: failure"));
+}
+
+TEST_F(Junit, OfNumbersOfUavsHasTheVerdict) {
+  UavsReport report{.condition = "all", .board = "obc", .question = {.most = 2}};
+  report.answer.too_many = 3;
+  EXPECT_THAT(verdict_in(suites(to_junit(report, out_))),
+              StartsWith("It is not known whether this board carries 1 UAV"));
 }
 
 TEST_F(Junit, OfWhatEndedBeforeThereWasAResult) {

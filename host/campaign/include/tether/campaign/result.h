@@ -149,7 +149,7 @@ double total_J(const energy::Energies_J& spent_J);
 struct Doubt {
   enum class Kind {
     kUnseenWait,       ///< the program waited on something that Tether does not see; amount: s,
-                       ///< on the modelled computer, as if something else computed
+                       ///< on the modelled computer at most, as if something else computed
     kParallelThreads,  ///< threads computed in parallel, but their times were added; amount: CPU
                        ///< time over wall time, > 1
     kDiskWait,         ///< the program waited for the disk, which its clock does not count; s

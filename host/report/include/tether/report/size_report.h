@@ -37,6 +37,9 @@ struct SizedCondition {
 };
 /// With so many copies, the seeds change too little for an answer that is surer.
 inline constexpr std::size_t kMostCopies = 20;
+/// Whether the seeds change nothing: flights differ only where their slowdowns do, so that all of
+/// them are one flight at several speeds.
+bool is_one_start(const SizedCondition& sized);
 /// Adds the flight, or counts it as a copy. @return whether it is one. @pre the trial did not fail.
 bool add_flight(SizedCondition& to, const campaign::TrialResult& trial, double slowdown);
 
@@ -48,8 +51,6 @@ struct Board {
   std::optional<double> high{};
 };
 enum class BoardVerdict { kSuffices, kUndecided, kDoesNot };
-/// A board suffices if all of its interval is within that of sufficient slowdowns.
-BoardVerdict verdict(const Board& board, const SizedCondition& sized);
 
 struct SizeReport {
   std::string scenario;
@@ -69,7 +70,15 @@ struct SizeReport {
 /// answer.
 bool has_unseen_time(const SizeReport& report);
 
-/// The answer and its evidence: one sentence, then one for each board, then what limits the answer.
+/// Whether the answer is as sure as asked, and some slowdown of the question is sufficient.
+bool is_answered(const SizeReport& report);
+
+/// A board suffices if all of its interval is within that of sufficient slowdowns.
+BoardVerdict verdict(const Board& board, const SizeReport& report);
+Answer board_answer(const Board& board, const SizeReport& report);
+
+/// The answer and its evidence: one sentence, after one about slower computers that reach the goal
+/// where faster ones fail, if there are any; then one for each board, then what limits the answer.
 std::vector<Answer> size_answers(const SizeReport& report);
 /// The same without emphasis.
 std::vector<std::string> size_sentences(const SizeReport& report);

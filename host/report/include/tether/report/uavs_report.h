@@ -29,6 +29,7 @@ struct UavsLevel {
 
 struct UavsReport {
   std::string scenario{};
+  std::string named{};  ///< the scenario for a command line (scenario::ShippedFiles::name_of)
   std::string condition{};
   std::string board{};  ///< name of the target that the UAVs share
   int cores = 1;        ///< of the board
@@ -51,6 +52,8 @@ std::size_t flights_of(const UavsReport& report);
 /// Of these, copies of other ones with as many UAVs, which do not count.
 std::size_t copies_in(const UavsReport& report);
 
+/// Whether the number of UAVs is known, and at least the least one that was asked for.
+bool is_answered(const UavsReport& report);
 /// The answer with its evidence, then what limits it.
 std::vector<Answer> uavs_answers(const UavsReport& report);
 /// What to do next; each one sentence.

@@ -71,8 +71,9 @@ struct MissReason {
     kEquallyFastReaches,  ///< another one has the same computers and sensors, and reaches it
   };
   Evidence evidence = Evidence::kNothing;
-  std::string condition{};  ///< the other one
-  std::string text{};       ///< part of a sentence: what happened, or what was compared
+  std::string condition{};         ///< the other one
+  std::string text{};              ///< part of a sentence: what happened, or what was compared
+  bool is_of_other_build = false;  ///< the other one's programs are for another architecture
 };
 
 /// A doubt of campaign::Doubt in the flights of a condition.

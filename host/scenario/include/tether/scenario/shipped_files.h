@@ -54,6 +54,10 @@ class ShippedFiles {
   /// The file of that name; it need not exist.
   std::filesystem::path file_of(ShippedKind kind, const std::string& name) const;
 
+  /// What a command line can call the file in any folder: its name if it is shipped, else its path.
+  /// @param file an absolute path
+  std::string name_of(ShippedKind kind, const std::filesystem::path& file) const;
+
   /// What a file in `folder` means by `given`: nothing if it is a path, because there is such a
   /// file, or because it has a folder or an extension; else the shipped file of that name.
   /// @throws Error(kUsage), about `given`, with the nearest name, if there is neither; or if a file
