@@ -56,6 +56,13 @@ std::string recorded_at(const fs::path& record) try {
           std::chrono::time_point_cast<std::chrono::system_clock::duration>(written))));
 }
 
+/// What the result beside a record has in doubt; empty: nothing, or it has none.
+std::vector<timing::Doubt> doubts_beside(const fs::path& record) try {
+  return campaign::read_result(record.parent_path()).this_run.doubts;
+} catch (const Error&) {
+  return {};
+}
+
 timing::Timing read_any(const fs::path& given) {
   const bool is_run = kind_of(given) == FileKind::kRun;
   const fs::path file = is_run ? given / runner::kRecordFile : given;
@@ -64,7 +71,9 @@ timing::Timing read_any(const fs::path& given) {
   const record::Record record = record::read_record(file);
   if (const std::string damage = record::describe_damage(record); !damage.empty())
     complain("warning: " + file.string() + ": " + damage);
-  return timing::of_record(record, file, recorded_at(file));
+  timing::Timing timing = timing::of_record(record, file, recorded_at(file));
+  for (const timing::Doubt& doubt : doubts_beside(file)) timing::add(timing, doubt);
+  return timing;
 }
 
 timing::Timing read_all(const std::vector<fs::path>& files) {
@@ -122,14 +131,21 @@ void require_fit(const TimingOptions& options) {
     if (!file.empty()) refuse(option, "cannot be used with --against.");
 }
 
-/// The results of the flights of these records. Timing files have none.
+/// The results of the flights of these records. A timing file has what they had in doubt.
 campaign::ConditionResults flights_of(const std::vector<fs::path>& files,
                                       const std::string& condition) {
   campaign::ConditionResults flights{condition, {}, 0};
   for (const fs::path& file : files) try {
       const bool is_run = kind_of(file) == FileKind::kRun;
-      if (is_run || !timing::is_timing_file(file))
+      if (is_run || !timing::is_timing_file(file)) {
         flights.trials.push_back(campaign::read_result(is_run ? file : file.parent_path()));
+      } else if (const timing::Timing timing = timing::read_timing(file); !timing.doubts.empty()) {
+        campaign::TrialResult& measured = flights.trials.emplace_back();
+        measured.outcome = campaign::Outcome::kGoalReached;
+        measured.this_run.doubts = timing.doubts;
+        for (timing::Doubt& doubt : measured.this_run.doubts)
+          doubt.recorded_in = file.filename().string();
+      }
     } catch (const Error&) {  // a record alone
     }
   flights.planned = flights.trials.size();

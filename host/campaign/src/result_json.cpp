@@ -15,9 +15,6 @@ namespace tether::campaign {
 namespace {
 
 constexpr std::array<std::string_view, 3> kOutcomes = {"goal_reached", "goal_missed", "failed"};
-constexpr std::array<std::string_view, 6> kDoubts = {"unseen_wait", "parallel_threads",
-                                                     "disk_wait",   "stretched_wait",
-                                                     "slight_wait", "busy_machine"};
 
 // A SUT's details are an object that the SUT defines. What is not an object, or is nested too
 // deeply to be read again, is kept as text.
@@ -191,9 +188,10 @@ void fields(auto& io, Maybe<TargetReport> auto& m) {
 }
 
 void fields(auto& io, Maybe<Doubt> auto& m) {
-  io.word("kind", m.kind, kDoubts.size());
+  io.word("kind", m.kind, timing::kDoubts);
   io("subject", m.subject);
   io("amount", m.amount);
+  io.some("recorded_in", m.recorded_in);
 }
 
 void fields(auto& io, Maybe<MachineLoad> auto& m) {
@@ -280,10 +278,6 @@ void fields(auto& io, Maybe<TrialResult> auto& m) {
 
 std::string_view name(Outcome outcome) {
   return kOutcomes[static_cast<std::size_t>(outcome)];
-}
-
-std::string_view name(Doubt::Kind kind) {
-  return kDoubts[static_cast<std::size_t>(kind)];
 }
 
 int exit_code(Outcome outcome) {

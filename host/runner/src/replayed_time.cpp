@@ -66,6 +66,11 @@ ReplayedTime replayed_time(const TrialSpec& spec) {
                .board = timing.board,
                .build_id = timing.build_id};
   time.has_waits = timing.clock.starts_with(computer::name(computer::ClockKind::kWall));
+  for (campaign::Doubt doubt : timing.doubts) {
+    doubt.recorded_in = time.from.timing;
+    if (doubt.subject.empty()) doubt.subject = timing.board;
+    time.doubts.push_back(std::move(doubt));
+  }
   if (setting.mode != computer::ReplayMode::kExact)
     time.warnings = timing::warnings(timing::stage_rows(timing));
   for (std::string& warning : time.warnings)

@@ -16,6 +16,8 @@ namespace tether::runner {
 struct ReplayedTime {
   std::vector<timing::Replay> replays;  ///< one for each UAV; empty: no time is replayed
   record::ReplayInfo from;
+  /// Of the runs in which the time was measured.
+  std::vector<campaign::Doubt> doubts;
   bool has_waits = false;             ///< it was wall time: what the program waited is in it
   std::vector<std::string> warnings;  ///< about the timing file, one line each
 };

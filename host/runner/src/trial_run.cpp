@@ -358,7 +358,7 @@ TrialEnd TrialRun::fly(std::optional<MachineWatch>& machine) {
 }
 
 std::vector<campaign::Doubt> TrialRun::doubts(const coordinator::RunReport& report) const {
-  std::vector<campaign::Doubt> doubts;
+  std::vector<campaign::Doubt> doubts = inputs_.replayed.doubts;
   for (std::size_t uav = 0; uav < report.suts.size(); ++uav)
     std::ranges::copy(doubts_of(report.suts[uav], computer_of(spec_.condition, uav).clock,
                                 inputs_.replayed.has_waits),

@@ -48,6 +48,15 @@ TEST_F(ReplayedTimeTest, GivesEachUavItsTimeAndSaysWhereFrom) {
   EXPECT_TRUE(load().replays.empty());
 }
 
+// A replay is as doubtful as the runs in which its times were measured.
+TEST_F(ReplayedTimeTest, HasTheDoubtsOfTheRunsThatWereMeasured) {
+  using Kind = campaign::Doubt::Kind;
+  timing_.doubts = {{Kind::kUnseenWait, "uav1", 0.4}, {Kind::kBusyMachine, "", 0.2}};
+  EXPECT_EQ(load().doubts,
+            (std::vector<campaign::Doubt>{{Kind::kUnseenWait, "uav1", 0.4, "a.timing"},
+                                          {Kind::kBusyMachine, "pi", 0.2, "a.timing"}}));
+}
+
 TEST_F(ReplayedTimeTest, EachRunIsGivenTheTimeFromItsFirstCallOn) {
   spec_.condition.replay->mode = computer::ReplayMode::kExact;
   const std::vector<link::StageTime> first{{"a", Duration(5)}};

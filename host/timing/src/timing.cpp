@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <set>
 #include <string>
@@ -13,6 +14,10 @@
 
 namespace tether::timing {
 namespace {
+
+constexpr std::array<std::string_view, kDoubts> kDoubtNames = {"unseen_wait", "parallel_threads",
+                                                               "disk_wait",   "stretched_wait",
+                                                               "slight_wait", "busy_machine"};
 
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& subject,
                          const std::string& what) {
@@ -31,6 +36,10 @@ Build build_of(const Timing& timing, const std::string& uav) {
 }
 
 }  // namespace
+
+std::string_view name(Doubt::Kind kind) {
+  return kDoubtNames[static_cast<std::size_t>(kind)];
+}
 
 std::optional<std::string> difference(const Build& was, const Build& is) {
   constexpr std::size_t kMostNamed = 3;
@@ -90,6 +99,7 @@ Timing of_record(const record::Record& record, const std::filesystem::path& file
                 .clock = clock_of(first),
                 .recorded_at = recorded_at,
                 .counted_ns = {},
+                .doubts = {},
                 .runs = {}};
   for (const record::SutInfo& sut : header.suts) {
     if (sut.replay)
@@ -134,6 +144,16 @@ void require_counted(const Timing& timing, const std::filesystem::path& file) {
                        timing.clock));
 }
 
+void add(Timing& timing, const Doubt& doubt) {
+  const auto known = std::ranges::find_if(timing.doubts, [&](const Doubt& one) {
+    return one.kind == doubt.kind && one.subject == doubt.subject;
+  });
+  if (known == timing.doubts.end())
+    timing.doubts.push_back(doubt);
+  else
+    known->amount = std::max(known->amount, doubt.amount);
+}
+
 void add(Timing& timing, const Timing& more, const std::filesystem::path& file) {
   const std::tuple<const char*, const std::string&, const std::string&> same[] = {
       {"scenario", timing.scenario, more.scenario},
@@ -161,6 +181,7 @@ void add(Timing& timing, const Timing& more, const std::filesystem::path& file) 
           fmt::format("has seed {} of UAV \"{}\" again. Give each run once.", run.seed, run.uav));
     timing.runs.push_back(run);
   }
+  for (const Doubt& doubt : more.doubts) add(timing, doubt);
   if (more.condition != timing.condition) timing.condition.clear();
   timing.recorded_at = std::max(timing.recorded_at, more.recorded_at);
 }

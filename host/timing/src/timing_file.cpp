@@ -1,4 +1,5 @@
 #include <charconv>
+#include <cmath>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -12,8 +13,8 @@
 #include <tether/timing/timing.h>
 
 // A timing file is text. Each line is a key and its values, separated by tabs: first what was
-// timed, the parts of each UAV's build, then each run with a line for each call, then the number of
-// calls.
+// timed, the parts of each UAV's build, what is in doubt, then each run with a line for each call,
+// then the number of calls.
 namespace tether::timing {
 namespace {
 
@@ -52,6 +53,7 @@ class Parser {
       timing.builds[std::string(words[1])].push_back(
           {std::string(words[2]), std::string(words[3])});
     }
+    for (; words[0] == "doubt"; words = next()) add(timing, read_doubt(words));
     std::size_t calls = 0;
     for (; words[0] != "end"; words = next()) {
       if (words[0] == "run") {
@@ -133,6 +135,18 @@ class Parser {
     return value;
   }
 
+  Doubt read_doubt(const Words& words) const {
+    require_words(words, 4);
+    Doubt doubt{.subject = std::string(words[2]), .amount = number<double>(words[3])};
+    if (!(doubt.amount >= 0.0 && std::isfinite(doubt.amount)))
+      fail(fmt::format("a doubt has the amount \"{}\", not a number ≥ 0", words[3]));
+    for (std::size_t i = 0; i < kDoubts; ++i) {
+      doubt.kind = static_cast<Doubt::Kind>(i);
+      if (name(doubt.kind) == words[1]) return doubt;
+    }
+    fail(fmt::format("\"{}\" is no kind of doubt", words[1]));
+  }
+
   Call read_call(const Words& words) const {
     if (words.size() < 2 || words.size() % 2 != 0)
       fail("a call needs a name, then pairs of a stage and its time");
@@ -186,6 +200,9 @@ void write_timing(const std::filesystem::path& file, const Timing& timing) {
   for (const auto& [uav, build] : timing.builds)
     for (const link::BuildPart& part : build)
       append_line(out, {"build", uav, part.name, part.value});
+  for (const Doubt& doubt : timing.doubts)
+    append_line(out, {"doubt", std::string(name(doubt.kind)), doubt.subject,
+                      fmt::format("{}", doubt.amount)});
   std::size_t calls = 0;
   for (const Run& run : timing.runs) {
     append_line(out, {"run", run.uav, std::to_string(run.seed)});

@@ -23,6 +23,9 @@ class TimingFile : public testing::Test {
 TEST_F(TimingFile, KeepsEverything) {
   Timing timing = sample_timing();
   timing.counted_ns = {{"detect", 1234.5678901234567}, {"decide", 0.0}};
+  timing.doubts = {{Doubt::Kind::kUnseenWait, "uav1", 0.4}, {Doubt::Kind::kBusyMachine, "", 0.1}};
+  add(timing, Doubt{Doubt::Kind::kBusyMachine, "", 0.3});
+  EXPECT_EQ(timing.doubts.back().amount, 0.3);
   write_timing(file_, timing);
   EXPECT_TRUE(is_timing_file(file_));
   EXPECT_EQ(read_timing(file_), timing);
@@ -53,7 +56,9 @@ TEST_F(TimingFile, NamesTheLineOfAFault) {
       {"end\t4", "end\t5", 16},
       {"end\t4\n", "end\t4\nmore\n", 16},
       {"build\tuav1\targument 1", "counted\tdetect\t-1\nbuild\tuav1\targument 1", 9},
-      {"run\tuav1\t1", "build\tuav1\nrun\tuav1\t1", 11}};
+      {"run\tuav1\t1", "build\tuav1\nrun\tuav1\t1", 11},
+      {"run\tuav1\t1", "doubt\tboredom\tuav1\t1\nrun\tuav1\t1", 11},
+      {"run\tuav1\t1", "doubt\tunseen_wait\tuav1\tinf\nrun\tuav1\t1", 11}};
   for (const auto& [found, planted, line] : faults) {
     std::string text = whole;
     text.replace(text.find(found), std::string_view(found).size(), planted);

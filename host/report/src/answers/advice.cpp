@@ -115,6 +115,11 @@ std::string sentence_of(const Advice& advice, const Verdict& verdict) {
           "Run `tether audit` on the records of “{}”. If the program stamps its own time, check "
           "that first.",
           advice.subject);
+    case Kind::kRecordAgain:
+      return fmt::format(
+          "Measure the times of “{}” again without that, and write the file again (`tether timing "
+          "--out`).",
+          advice.subject);
     case Kind::kCoolBoard:
       return "Cool the board, or give it enough power (`tether target check`), and fly again.";
     case Kind::kSpeedUpStage:
@@ -151,6 +156,8 @@ std::string sentence_of(const Advice& advice, const Verdict& verdict) {
     case Kind::kCompareMore:
       return "Fly both conditions more often, to see whether chance explains the difference "
              "(`trials` in the campaign's file, then `--resume`).";
+    case Kind::kGiveValue:
+      return "Let the program report what the metric needs, or remove its limit.";
     case Kind::kSetLimit:
       return "Give a metric of the scenario a limit (such as `max_s` of `time_required`), or fly a "
              "mission with deadlines.";

@@ -126,14 +126,19 @@ std::string doubt_text(const FlightsInDoubt& doubt, const ConditionVerdict& cond
   const campaign::Doubt& largest = doubt.largest;
   const std::size_t ended = condition.flown + condition.failed;
   const bool is_of_uav = largest.kind != campaign::Doubt::Kind::kBusyMachine;
+  const bool needs_at_most = is_of_uav && largest.kind != campaign::Doubt::Kind::kUnseenWait;
   const std::string where = ended > 1
-                                ? fmt::format("{} in {} of {}", is_of_uav ? ", at most," : ",",
+                                ? fmt::format("{} in {} of {}", needs_at_most ? ", at most," : ",",
                                               doubt.flights, counted(ended, "flight"))
                                 : "";
   const std::string subject = is_of_uav || largest.subject.empty()
                                   ? largest.subject
                                   : fmt::format(" “{}”", largest.subject);
-  return fmt::format(fmt::runtime(kDoubts[static_cast<std::size_t>(largest.kind)]),
+  const std::string when = largest.recorded_in.empty()
+                               ? ""
+                               : fmt::format("when “{}” was recorded, ", largest.recorded_in);
+  return when +
+         fmt::format(fmt::runtime(kDoubts[static_cast<std::size_t>(largest.kind)]),
                      fmt::arg("subject", subject), fmt::arg("amount", largest.amount),
                      fmt::arg("percent", 100.0 * largest.amount)) +
          where;

@@ -114,6 +114,7 @@ void count(ConditionVerdict& verdict, const campaign::TrialResult& trial) {
     for (const std::string& stage : trial.replay->unknown_stages)
       if (std::ranges::count(verdict.uncharged, stage) == 0) verdict.uncharged.push_back(stage);
   if (trial.outcome == campaign::Outcome::kGoalReached) ++verdict.reached;
+  if (missed_for_no_value(trial) != nullptr) ++verdict.without_value;
   if (has_crash(trial)) ++verdict.crashed;
   if (trial.this_run.target && trial.this_run.target->is_spoiled) ++verdict.throttled;
   std::optional<std::pair<std::string, double>> worst;
@@ -251,13 +252,19 @@ std::vector<Advice> advice_on(const ConditionVerdict& lead) {
         if (lead.doubt(doubt) != nullptr) advice.push_back({kind});
       if (lead.doubt(campaign::Doubt::Kind::kParallelThreads) != nullptr)
         advice.push_back({Kind::kRunConcurrent});
+      for (const FlightsInDoubt& doubt : lead.doubts)
+        if (const std::string& file = doubt.largest.recorded_in;
+            doubt.largest.is_of_unseen_time() && !file.empty())
+          return advice.push_back({Kind::kRecordAgain, file}), advice;
       break;
     case Ruling::kNotFastEnough:
       if (is_too_slow) advice.push_back({Kind::kSpeedUpStage, lead.pace->stages.front().stage});
       advice.push_back({Kind::kFindThreshold, lead.condition});
       break;
     case Ruling::kGoalMissed:
-      if (lead.pace && lead.pace->speed.stretches_unseen_waits())
+      if (lead.without_value == lead.flown - lead.reached)
+        advice.push_back({Kind::kGiveValue});
+      else if (lead.pace && lead.pace->speed.stretches_unseen_waits())
         advice.push_back({Kind::kUnstretch});
       else if (lead.miss->evidence == MissReason::Evidence::kFasterUndecided)
         advice.push_back({Kind::kCompareMore, lead.condition});
@@ -270,10 +277,14 @@ std::vector<Advice> advice_on(const ConditionVerdict& lead) {
     case Ruling::kUndecided:
     case Ruling::kFastEnoughSoFar:
       if (!lead.mixed_build.empty()) break;  // all have to be flown again
-      if (is_within_spread(lead))
-        advice.push_back({lead.doubt(campaign::Doubt::Kind::kBusyMachine) != nullptr
-                              ? Kind::kQuietMachine
-                              : Kind::kShowWaits});
+      if (is_within_spread(lead)) {
+        const FlightsInDoubt* const busy = lead.doubt(campaign::Doubt::Kind::kBusyMachine);
+        const std::string file = busy == nullptr ? "" : busy->largest.recorded_in;
+        advice.push_back({busy == nullptr ? Kind::kShowWaits
+                          : file.empty()  ? Kind::kQuietMachine
+                                          : Kind::kRecordAgain,
+                          file});
+      }
       if (lead.flown > 1 && lead.is_one_flight())
         advice.push_back({Kind::kVarySeeds});
       else if (!is_within_spread(lead))

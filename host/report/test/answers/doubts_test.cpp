@@ -52,6 +52,19 @@ TEST(Verdict, OfAProgramThatWaitedALittleHoldsIfThatCannotChangeIt) {
   EXPECT_THAT(answers_of({verdict_of(scenario)})[0].rest, testing::Not(HasSubstr("waited")));
 }
 
+TEST(Verdict, OfReplayedTimesHasTheDoubtsOfTheirMeasurement) {
+  campaign::ScenarioResults scenario = flights(1, 0);
+  std::vector<campaign::Doubt>& doubts = scenario.conditions[0].trials[0].this_run.doubts;
+  doubts = {{campaign::Doubt::Kind::kBusyMachine, "pi", 0.3, "a.timing"}};
+  EXPECT_EQ(ruling_of(scenario), Ruling::kUndecided);
+  EXPECT_EQ(verdict_of(scenario).advice[0].kind, Advice::Kind::kRecordAgain);
+  doubts = {{campaign::Doubt::Kind::kUnseenWait, "uav1", 0.4, "a.timing"}};
+  EXPECT_EQ(answers_of({verdict_of(scenario)})[0].rest.substr(0, 68),
+            ": when “a.timing” was recorded, the program of uav1 waited up to");
+  EXPECT_THAT(advice_of({verdict_of(scenario)}),
+              testing::Contains(HasSubstr("Measure the times of “a.timing” again")));
+}
+
 // One more would be beyond the limit.
 TEST(Verdict, OfACountAtItsLimitIsUndecidedOnABusyMachine) {
   campaign::ScenarioResults scenario = flights(1, 0);

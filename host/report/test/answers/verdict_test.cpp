@@ -134,6 +134,13 @@ TEST(Verdict, KnowsAFlightThatMissedOnlyForWantOfAValue) {
   EXPECT_EQ(missed_without_value(trial), "time required has no value: no estimates");
   EXPECT_EQ(missed_limits(std::vector<const TrialResult*>{&trial})[0].first,
             "time required ≤ 5 s (no value: no estimates)");
+  campaign::ScenarioResults scenario = flights(0, 1);
+  scenario.conditions[0].trials = {trial};
+  EXPECT_THAT(
+      verdict_text({verdict_of(scenario)}, Markup::kPlain),
+      testing::AllOf(HasSubstr("the flight does not meet time required ≤ 5 s (no value: no "
+                               "estimates). "),
+                     HasSubstr("Let the program report"), testing::Not(HasSubstr("tether size"))));
   trial.end = campaign::kEndTimeLimit;
   EXPECT_EQ(missed_without_value(trial), "");
 }
@@ -224,7 +231,8 @@ TEST(Verdict, OfASweepOverTheFactorSaysHowSlowWouldDo) {
 
 TEST(Verdict, OfASweepSaysWhatItsHeadlineDoesNotKnow) {
   const auto point = [](const std::string& factor, std::vector<Warning> warnings) {
-    campaign::ScenarioResults scenario = flights(1, 0);
+    campaign::ScenarioResults scenario = flights(2, 0);  // copies
+    for (TrialResult& trial : scenario.conditions[0].trials) trial.flight_digest = "same";
     scenario.settings = {{"cpu_factor", factor}};
     scenario.conditions[0].trials[0].warnings = std::move(warnings);
     return verdict_of(scenario);

@@ -17,6 +17,7 @@
 #include <tether/judge/judge.h>
 #include <tether/record/reader.h>
 #include <tether/scenario/scenario.h>
+#include <tether/timing/doubt.h>
 #include <tether/timing/pace.h>
 
 /// The result of one trial and its file, `result.json` (docs/design.md section 5).
@@ -29,6 +30,7 @@ inline constexpr std::string_view kReportFile = "report.html";
 /// How each JUnit file begins that Tether writes; the user names it.
 inline constexpr std::string_view kJunitBegin =
     "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n";
+bool is_junit(const std::filesystem::path& file);
 
 enum class Outcome {
   kGoalReached,  ///< exit 0: every SUT finished with its goal reached, every metric within its
@@ -144,34 +146,7 @@ struct UavEnergy {
 };
 double total_J(const energy::Energies_J& spent_J);
 
-/// What a run did not see or could not measure well, so that its verdict may be wrong. The part of
-/// it that follows from the files is Warning::can_change_verdict.
-struct Doubt {
-  enum class Kind {
-    kUnseenWait,       ///< the program waited on something that Tether does not see; amount: s,
-                       ///< on the modelled computer at most, as if something else computed
-    kParallelThreads,  ///< threads computed in parallel, but their times were added; amount: CPU
-                       ///< time over wall time, > 1
-    kDiskWait,         ///< the program waited for the disk, which its clock does not count; s
-    kStretchedWait,    ///< the program waited, and a factor made more of it; s, as it was
-    kSlightWait,       ///< as the first, too short to matter unless a limit is as close; amount:
-                       ///< share of its time
-    kBusyMachine,      ///< the machine was busy or uneven; amount: MachineLoad::block_spread or,
-                       ///< if more, `others`
-  };
-  Kind kind = Kind::kUnseenWait;
-  std::string subject;  ///< the UAV of the program, or the board; empty: this machine
-  double amount = 0.0;
-
-  /// Without this one, the times would be other ones: nothing is known of the computer. Otherwise
-  /// the amount says by how much they can be off.
-  bool is_of_unseen_time() const { return kind < Kind::kSlightWait; }
-
-  friend bool operator==(const Doubt&, const Doubt&) = default;
-};
-/// "unseen_wait", "parallel_threads", "disk_wait", "stretched_wait", "slight_wait",
-/// "busy_machine".
-std::string_view name(Doubt::Kind kind);
+using timing::Doubt;
 
 /// How far a machine on which execution time was measured was from idle and even during a run.
 struct MachineLoad {

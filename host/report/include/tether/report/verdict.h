@@ -95,8 +95,9 @@ struct ConditionVerdict {
   std::size_t failed = 0;        ///< in the set-up or by a lost part: these say nothing
   bool was_interrupted = false;  ///< the user stopped a flight
   std::size_t crashed = 0;
-  std::size_t throttled = 0;  ///< the board reduced its clock frequency
-  std::size_t unsound = 0;    ///< audit not passed, or causality violations
+  std::size_t throttled = 0;      ///< the board reduced its clock frequency
+  std::size_t without_value = 0;  ///< missed the goal only because a metric has no value
+  std::size_t unsound = 0;        ///< audit not passed, or causality violations
   /// The exact interval (Clopper and Pearson, 1934) of the share that reaches the goal, 95 %, from
   /// the distinct flights. None if nothing has flown.
   std::optional<campaign::Interval> share{};
@@ -146,6 +147,7 @@ struct Advice {
     kCountDisk,      ///< it waits for the disk
     kUnstretch,      ///< a factor stretches its waiting
     kRunConcurrent,  ///< its threads compute in parallel
+    kRecordAgain,    ///< replayed times are in doubt; subject: their timing file
     kCoolBoard,      ///< subject: the condition
     kSpeedUpStage,   ///< subject: the stage
     kTryFaster,      ///< is it the computer? subject: the condition
@@ -155,6 +157,7 @@ struct Advice {
     kFindThreshold,  ///< subject: the condition
     kFlyMore,        ///< subject: the condition; flights: how many in all, 0: very many
     kCompareMore,    ///< a faster condition was flown, too few times; subject: the condition
+    kGiveValue,      ///< all that missed the goal did so because a metric has no value
     kSetLimit,
     kSynchronise,
   };

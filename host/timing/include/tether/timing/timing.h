@@ -9,6 +9,7 @@
 
 #include <tether/link/messages.h>
 #include <tether/record/reader.h>
+#include <tether/timing/doubt.h>
 
 /// What programs computed between their calls, by stage: taken from records, and kept in timing
 /// files (docs/guide/timing.md).
@@ -44,6 +45,7 @@ struct Timing {
   std::string recorded_at;  ///< when the newest run was recorded: UTC as in ISO 8601
   /// Of the same program under a counted clock: mean ET of each stage [ns].
   std::map<std::string, double> counted_ns{};
+  std::vector<Doubt> doubts{};  ///< of the runs: of each kind and subject, the largest
   std::vector<Run> runs;
   friend bool operator==(const Timing&, const Timing&) = default;
 };
@@ -65,6 +67,8 @@ std::optional<std::string> difference(const Build& was, const Build& is);
 /// How many flights these are, for people: "2 runs", "1 run of 2 UAVs".
 std::string runs_text(const Timing& timing);
 
+/// Adds what one of the runs has in doubt.
+void add(Timing& timing, const Doubt& doubt);
 /// Adds the runs of `more`, which was read from `file`.
 /// @throws Error(kBadFile) about `file` if scenario, program, machine or clock differ, or a run of
 /// the same UAV and seed is there.
