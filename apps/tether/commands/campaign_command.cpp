@@ -173,6 +173,10 @@ int run_trials(const CampaignOptions& options, const std::stop_token& stop) {
   require_parallel_allowed(campaign, engine, jobs);
   const std::filesystem::path out =
       options.out.empty() ? std::filesystem::path("out/campaigns") / campaign.name : options.out;
+  const auto mode = !options.shard.empty() ? campaign::OpenMode::kShard
+                    : options.resume       ? campaign::OpenMode::kResume
+                                           : campaign::OpenMode::kFresh;
+  campaign::require_folder(out, campaign, mode);
   sim::WorldStore worlds;
   const auto [files, warnings] = runner::files_of_trials(campaign, find_back_end, worlds);
   if (!warnings.empty())
@@ -181,10 +185,7 @@ int run_trials(const CampaignOptions& options, const std::stop_token& stop) {
   if (!engine) servers.start(jobs, trial_service(worlds));
   const campaign::Settings settings = campaign::campaign_settings(
       campaign, versions_of(campaign, options.reading, engine.has_value()), files);
-  const campaign::CampaignFolder folder(out, campaign, settings,
-                                        !options.shard.empty() ? campaign::OpenMode::kShard
-                                        : options.resume       ? campaign::OpenMode::kResume
-                                                               : campaign::OpenMode::kFresh);
+  const campaign::CampaignFolder folder(out, campaign, settings, mode);
   for (const std::string& warning : folder.warnings()) complain("warning: " + warning);
 
   const Flying flying{options, campaign, folder, settings, files, jobs, stop};

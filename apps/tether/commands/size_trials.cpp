@@ -80,7 +80,7 @@ SizeTrials::SizeTrials(const SizeOptions& options, scenario::Campaign campaign,
       jobs_(jobs_of(options.engine, engine_)),
       stop_(std::move(stop)),
       name_(std::move(name)),
-      files_(checked_files()),
+      files_(checked_files(out)),
       settings_(campaign::campaign_settings(
           campaign_, versions_of(campaign_, options.reading, engine_.has_value()), files_)),
       folder_(out, campaign_, settings_, open_mode(options)) {
@@ -92,7 +92,8 @@ SizeTrials::SizeTrials(const SizeOptions& options, scenario::Campaign campaign,
   }
 }
 
-std::vector<std::filesystem::path> SizeTrials::checked_files() {
+std::vector<std::filesystem::path> SizeTrials::checked_files(const std::filesystem::path& out) {
+  campaign::require_folder(out, campaign_, open_mode(options_));
   require_parallel_allowed(campaign_, engine_, jobs_);
   sim::WorldStore worlds;
   const auto [files, warnings] = runner::files_of_trials(campaign_, find_back_end, worlds);

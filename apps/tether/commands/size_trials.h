@@ -73,7 +73,7 @@ class SizeTrials {
  private:
   using Plans = std::vector<const campaign::TrialPlan*>;
 
-  std::vector<std::filesystem::path> checked_files();
+  std::vector<std::filesystem::path> checked_files(const std::filesystem::path& out);
   std::string text_of(const campaign::TrialPlan& plan) const;
   bool run(const Plans& plans, const Questions& questions);
   void take(const campaign::TrialPlan& plan, const Questions& questions);

@@ -17,14 +17,15 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kNewPrefix = ".new-";
 
-// A campaign.json that was being written when a campaign ended is replaced by the next one.
+// A campaign.json that was being written when a campaign ended is replaced by the next one, and a
+// JUnit file is written before its campaign begins.
 bool holds_anything(const fs::path& folder) {
   const std::string partial = std::string(kCampaignFile) + std::string(os::kPartSuffix);
   std::error_code failed;
   for (const auto& entry : fs::directory_iterator(folder, failed)) {
     const fs::path name = entry.path().filename();
     const bool is_ours = name == kLockFile || name == partial || name == kShardsFolder ||
-                         name.string().starts_with(kNewPrefix);
+                         name.string().starts_with(kNewPrefix) || is_junit(entry.path());
     if (!is_ours) return true;
   }
   if (!failed) return false;
@@ -96,6 +97,25 @@ void require_nothing_dropped(const fs::path& folder, const CampaignManifest& the
                   fmt::join(dropped, ", "), more > 0 ? fmt::format(" and {} more", more) : ""));
 }
 
+/// Of the campaign of that name.
+CampaignManifest manifest_in(const fs::path& folder, const std::string& name) {
+  std::error_code ignored;
+  if (!fs::exists(folder / kCampaignFile, ignored))
+    refuse_folder(folder, "is not empty and contains no campaign. Choose another folder.");
+  CampaignManifest then = read_manifest(folder);
+  if (then.name != name)
+    refuse_folder(folder,
+                  fmt::format("contains the campaign '{}', not '{}'. Choose another folder.",
+                              then.name, name));
+  return then;
+}
+
+[[noreturn]] void refuse_results(const fs::path& folder, std::size_t finished, std::size_t all) {
+  refuse_folder(folder, fmt::format("already contains {} of {} trials. Continue with --resume, or "
+                                    "choose another folder.",
+                                    finished, all));
+}
+
 // Otherwise a mistyped name would fly everything again. What was killed early left its lock.
 fs::path with_something_to_resume(fs::path folder, OpenMode mode) {
   if (mode != OpenMode::kResume) return folder;
@@ -114,6 +134,19 @@ fs::path with_something_to_resume(fs::path folder, OpenMode mode) {
 
 }  // namespace
 
+void require_folder(const fs::path& folder, const scenario::Campaign& campaign, OpenMode mode) {
+  require_place(folder);
+  (void)with_something_to_resume(folder, mode);
+  std::error_code none;
+  if (!fs::exists(folder, none) || !holds_anything(folder)) return;
+  (void)manifest_in(folder, campaign.name);
+  if (mode != OpenMode::kFresh) return;
+  const std::vector<TrialPlan> plans = plan_trials(campaign, folder);
+  const auto finished =
+      std::ranges::count_if(plans, [](const TrialPlan& plan) { return has_result(plan.folder); });
+  if (finished > 0) refuse_results(folder, static_cast<std::size_t>(finished), plans.size());
+}
+
 CampaignFolder::CampaignFolder(fs::path folder, const scenario::Campaign& campaign,
                                const Settings& settings, OpenMode mode)
     : folder_(with_something_to_resume(std::move(folder), mode)),
@@ -125,12 +158,8 @@ CampaignFolder::CampaignFolder(fs::path folder, const scenario::Campaign& campai
     if (mode == OpenMode::kReplace) remove_existing();
   }
   sort_trials(campaign);
-  if (mode == OpenMode::kFresh && !finished_.empty()) {
-    refuse_folder(folder_,
-                  fmt::format("already contains {} of {} trials. Continue with --resume, or "
-                              "choose another folder.",
-                              finished_.size(), finished_.size() + missing_.size()));
-  }
+  if (mode == OpenMode::kFresh && !finished_.empty())
+    refuse_results(folder_, finished_.size(), finished_.size() + missing_.size());
   write_manifest(manifest, mode);
   // A report of fewer trials would lie beside the new ones.
   std::error_code ignored;
@@ -152,15 +181,7 @@ void CampaignFolder::write_manifest(const CampaignManifest& manifest, OpenMode m
 }
 
 void CampaignFolder::check_existing(const CampaignManifest& now, OpenMode mode) const {
-  std::error_code ignored;
-  if (!fs::exists(folder_ / kCampaignFile, ignored))
-    refuse_folder(folder_, "is not empty and contains no campaign. Choose another folder.");
-  const CampaignManifest then = read_manifest(folder_);
-  if (then.name != now.name) {
-    refuse_folder(folder_,
-                  fmt::format("contains the campaign '{}', not '{}'. Choose another folder.",
-                              then.name, now.name));
-  }
+  const CampaignManifest then = manifest_in(folder_, now.name);
   if (mode == OpenMode::kReplace) return;
   require_nothing_dropped(folder_, then, now);
   require_same(folder_, then.settings, now.settings, mode);
@@ -189,6 +210,10 @@ void CampaignFolder::sort_trials(const scenario::Campaign& campaign) {
         listed->second.contains(plan.folder.filename().string()) && has_usable_result(plan);
     (is_finished ? finished_ : missing_).push_back(std::move(plan));
   }
+}
+
+bool is_junit(const fs::path& file) {
+  return os::begin_of(file, kJunitBegin.size()) == kJunitBegin;
 }
 
 std::optional<TrialResult> result_in(const fs::path& trial) try {

@@ -141,12 +141,26 @@ std::vector<os::FileDescriptor> share_campaigns(const fs::path& innermost, const
 
 }  // namespace
 
+void require_place(const fs::path& folder) {
+  const fs::path whole = whole_path(folder);
+  fs::path existing = whole;
+  std::error_code none;
+  while (!fs::exists(existing, none) && existing.has_relative_path())
+    existing = existing.parent_path();
+  const std::string what =
+      existing == whole ? std::string() : "cannot be made, because " + existing.string() + " ";
+  if (!fs::is_directory(existing, none))
+    refuse_folder(folder, what + "is a file, not a folder. Choose another name with --out.");
+  if (::access(existing.c_str(), W_OK | X_OK) != 0)
+    refuse_folder(folder,
+                  what + "is not writable. Choose another folder with --out, or change its mode.");
+}
+
 FolderClaim::FolderClaim(const fs::path& folder, By by) {
   const fs::path whole = whole_path(folder);
   (void)share_campaigns(whole, whole, folder);  // makes nothing where it is refused
+  require_place(folder);
   std::error_code failed;
-  if (fs::is_regular_file(folder, failed))
-    refuse_folder(folder, "is a file, not a folder. Choose another name with --out.");
   fs::create_directories(folder, failed);
   if (failed) fail(folder, "cannot be made", failed.value());
   const auto lock_campaign = [&](int how, const char* who) {

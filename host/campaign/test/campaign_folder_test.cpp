@@ -53,6 +53,33 @@ TEST_F(Folder, IsMadeWithItsManifestAndFindsWhatIsMissing) {
   EXPECT_THAT(folder.warnings(), IsEmpty());
 }
 
+TEST_F(Folder, IsRefusedBeforeAnyFileOfATrialIsRead) {
+  const auto expect_refused_at_once = [&](const std::filesystem::path& folder, OpenMode mode,
+                                          const char* why) {
+    const Error error =
+        thrown_error(ErrorCode::kUsage, [&] { require_folder(folder, campaign_, mode); });
+    EXPECT_EQ(error.subject(), folder.string());
+    EXPECT_THAT(error.what(), HasSubstr(why));
+  };
+  expect_refused_at_once(out_, OpenMode::kResume, "does not exist");
+  scratch_.write("junit/a.xml", std::string(kJunitBegin) + "</testsuites>\n");
+  require_folder(scratch_.path("junit"), campaign_, OpenMode::kFresh);
+  scratch_.write("junit/b.txt", "");
+  expect_refused_at_once(scratch_.path("junit"), OpenMode::kFresh, "contains no campaign");
+  const auto file = scratch_.write("file", "");
+  expect_refused_at_once(file, OpenMode::kReplace, "is a file, not a folder");
+  expect_refused_at_once(file / "out", OpenMode::kFresh, "cannot be made, because");
+  require_folder(out_ / "a/b", campaign_, OpenMode::kFresh);
+  EXPECT_FALSE(std::filesystem::exists(out_));
+  open(OpenMode::kFresh);
+  require_folder(out_, campaign_, OpenMode::kFresh);
+  keep(0);
+  expect_refused_at_once(out_, OpenMode::kFresh, "already contains 1 of 9 trials");
+  require_folder(out_, campaign_, OpenMode::kResume);
+  campaign_.name = "other";
+  expect_refused_at_once(out_, OpenMode::kReplace, "contains the campaign");
+}
+
 TEST_F(Folder, WarnsOfACorruptResultAndOfThatOfAnotherTrial) {
   open(OpenMode::kFresh);
   const auto one = keep(0), truncated = keep(3), other = keep(4);

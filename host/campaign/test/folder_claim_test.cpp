@@ -132,11 +132,10 @@ TEST_F(Claim, OfACampaignOnItsTrialsOutlivesIt) {
 TEST_F(Claim, NeedsAFolderThatCanBeFoundAndMade) {
   fs::create_directory_symlink("round", scratch_.path("round"));
   const fs::path file = scratch_.write("file", "text");
-  for (const fs::path& folder : {scratch_.path("round") / "out", file / "out"}) {
-    const Error error = thrown_error(ErrorCode::kSetup, [&] { claim(folder, By::kRun); });
-    EXPECT_EQ(error.subject(), folder);
-  }
-  EXPECT_EQ(thrown_error(ErrorCode::kUsage, [&] { claim(file, By::kRun); }).subject(), file);
+  const fs::path round = scratch_.path("round") / "out";
+  EXPECT_EQ(thrown_error(ErrorCode::kSetup, [&] { claim(round, By::kRun); }).subject(), round);
+  for (const fs::path& folder : {file, file / "out"})
+    EXPECT_EQ(thrown_error(ErrorCode::kUsage, [&] { claim(folder, By::kRun); }).subject(), folder);
 
   const fs::path before = fs::current_path(), gone = scratch_.path("gone");
   fs::create_directory(gone);

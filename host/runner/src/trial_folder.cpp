@@ -63,11 +63,6 @@ bool is_own(std::string path) {
       .about(path.string());
 }
 
-/// The user may have named it anything.
-bool is_junit(const fs::path& file) {
-  return os::begin_of(file, campaign::kJunitBegin.size()) == campaign::kJunitBegin;
-}
-
 bool is_folder(const fs::path& path) {
   std::error_code ignored;
   return fs::is_directory(fs::symlink_status(path, ignored));
@@ -126,7 +121,7 @@ void remove_earlier_run(const fs::path& folder, const campaign::TrialResult* run
   for (const fs::path& file : all) {
     const std::string path = file.lexically_relative(folder).string();
     const bool is_of_sut = run && std::ranges::count(run->this_run.sut_files, path) > 0;
-    if (!is_folder(file) && !is_own(path) && !is_of_sut && !is_junit(file))
+    if (!is_folder(file) && !is_own(path) && !is_of_sut && !campaign::is_junit(file))
       of_others.push_back(path);
   }
   std::ranges::sort(of_others);

@@ -115,7 +115,7 @@ TEST_F(TrialFolderTest, KeepsFilesOfOthersUnlessTheySeemToBeOfARun) {
 TEST_F(TrialFolderTest, ReportsAFolderThatCannotBeCreated) {
   const fs::path path = scratch_.write("file", "text") / "out";
   const auto create = [&] { TrialFolder(path, EarlierRun::kReplace); };
-  EXPECT_NE(thrown_error(ErrorCode::kSetup, create).subject(), "");
+  EXPECT_NE(thrown_error(ErrorCode::kUsage, create).subject(), "");
 }
 
 }  // namespace

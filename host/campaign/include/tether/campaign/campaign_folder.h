@@ -64,6 +64,11 @@ enum class OpenMode {
   kReplace,  ///< remove the results of a campaign of that name, and everything beside them
 };
 
+/// Checks what of the folder can be known before any file of a trial is read. Makes and changes
+/// nothing. @throws Error(kUsage), about the folder, as CampaignFolder.
+void require_folder(const std::filesystem::path& folder, const scenario::Campaign& campaign,
+                    OpenMode mode);
+
 /// A campaign's folder, claimed by this process while the object lives. Not thread-safe.
 class CampaignFolder {
  public:

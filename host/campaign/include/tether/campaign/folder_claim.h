@@ -8,6 +8,10 @@
 
 namespace tether::campaign {
 
+/// @throws Error(kUsage), about the folder, if it is none and cannot be made, or nothing can be
+///   written in it. Makes nothing.
+void require_place(const std::filesystem::path& folder);
+
 /// In a campaign's folder: a running campaign locks it and writes its process id into it.
 inline constexpr std::string_view kLockFile = ".tether-campaign.lock";
 
