@@ -29,12 +29,17 @@ std::optional<double> bearing_error(const GroundTruth& truth, const record::Anch
   const uav::Vec3 way = to_anchor(truth, *anchor);
   return std::abs(wrap_angle_rad(std::atan2(way.y, way.x) - uav::yaw_rad(attitude(truth))));
 }
+std::optional<double> separation(const GroundTruth& truth, const record::Anchor* anchor) {
+  const uav::Vec3 way = to_anchor(truth, *anchor);
+  return std::hypot(way.x, way.y, anchor->p_WA_m[2] - truth.p_WB_m[2]);
+}
 std::optional<double> distance(const GroundTruth& truth, const record::Anchor* anchor) {
   const uav::Vec3 way = to_anchor(truth, *anchor);
   return std::hypot(way.x, way.y);
 }
-std::optional<double> altitude(const GroundTruth& truth, const record::Anchor*) {
-  return truth.p_WB_m[2];
+template <std::size_t Axis>
+std::optional<double> position(const GroundTruth& truth, const record::Anchor*) {
+  return truth.p_WB_m[Axis];
 }
 std::optional<double> speed(const GroundTruth& truth, const record::Anchor*) {
   return std::hypot(truth.v_WB_m_s[0], truth.v_WB_m_s[1], truth.v_WB_m_s[2]);
@@ -53,9 +58,15 @@ struct Source {
 };
 // One entry for each of mission::quantities() that is not of events, the battery or the radio.
 constexpr std::array kSources = {
-    Source{"bearing_error", bearing_error}, Source{"distance", distance},
-    Source{"altitude", altitude},           Source{"speed", speed},
-    Source{"yaw_rate", yaw_rate},           Source{"clearance", clearance},
+    Source{"bearing_error", bearing_error},
+    Source{"distance", distance},
+    Source{"separation", separation},
+    Source{"x", position<0>},
+    Source{"y", position<1>},
+    Source{"altitude", position<2>},
+    Source{"speed", speed},
+    Source{"yaw_rate", yaw_rate},
+    Source{"clearance", clearance},
 };
 
 }  // namespace

@@ -62,6 +62,10 @@ TEST(Judge, ConditionsOnSignals) {
            {R"(always = "altitude <= 7.2 m in 90 %")", true, 0.0, 8.0, "7.2 m"},
            {R"(always = "speed <= 1.5 m/s")", true, 0.5, 8.0, "1 m/s"},
            {R"(always = "distance <= 4 m")", true, 1.0, 8.0, "3 m"},
+           {R"(eventually = "separation <= 3.5 m")", true, 0.5, 0.0, "3 m at ST 0.000 s"},
+           {R"(always = "separation <= 6 m")", false, 6.0 - std::hypot(3.0, 8.0), 5.2, "8.54"},
+           {R"(always = "x <= 2 m")", true, 2.0, 8.0, "0 m"},
+           {R"(always = "y >= -1 m")", true, 1.0, 8.0, "0 m"},
            {R"(always = "bearing_error <= 10 deg")", true, 10.0, 8.0, "0 deg"},
            {R"(always = "yaw_rate <= 10 deg/s")", true, 10.0, 8.0, "0 deg/s"},
            {R"(always = "clearance >= 1 m")", false, {}, {}, "clearance"}})
