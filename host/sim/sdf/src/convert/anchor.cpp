@@ -1,12 +1,17 @@
 #include "convert/sdf_convert.h"
 
 #include <algorithm>
+#include <limits>
+#include <optional>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <tether/base/suggest.h>
 
 namespace tether::sim {
+
+using uav::Pose;
 
 namespace {
 
@@ -43,30 +48,62 @@ std::optional<std::pair<uav::AnchorShape, uav::Vec3>> shape_and_size(const Geome
   return std::nullopt;
 }
 
+/// The visuals of the model, with their poses in it.
+std::vector<std::pair<const Visual*, Pose>> visuals_of(const Model& model) {
+  std::vector<std::pair<const Visual*, Pose>> visuals;
+  for (const Link& link : model.links)
+    for (const Visual& visual : link.visuals)
+      visuals.emplace_back(&visual, link.X_ML * visual.X_LV);
+  return visuals;
+}
+
+/// The box around boxes that are parallel to the model's axes, and its middle in the model.
+struct Around {
+  uav::Vec3 middle_M, size_m;
+};
+std::optional<Around> box_around(const std::vector<std::pair<const Visual*, Pose>>& visuals) {
+  constexpr double kLarge = std::numeric_limits<double>::infinity();
+  uav::Vec3 least{kLarge, kLarge, kLarge}, most{-kLarge, -kLarge, -kLarge};
+  for (const auto& [visual, X_MV] : visuals) {
+    const auto* box = std::get_if<BoxGeometry>(&visual->geometry);
+    if (box == nullptr || X_MV.q != uav::Quat{}) return std::nullopt;
+    const uav::Vec3 half = 0.5 * box->size_m;
+    for (double uav::Vec3::*axis : {&uav::Vec3::x, &uav::Vec3::y, &uav::Vec3::z}) {
+      least.*axis = std::min(least.*axis, X_MV.p.*axis - half.*axis);
+      most.*axis = std::max(most.*axis, X_MV.p.*axis + half.*axis);
+    }
+  }
+  return Around{0.5 * (least + most), most - least};
+}
+
 }  // namespace
 
 PlacedAnchor find_anchor(const SdfSource& source, const World& world, const std::string& name,
                          const FileLocation& requested_at) {
   const auto model = std::ranges::find(world.models, name, &Model::name);
   if (model == world.models.end()) refuse_unknown(source, world, name, requested_at);
-  std::size_t visuals = 0;
-  const Link* link = nullptr;
-  for (const Link& candidate : model->links) {
-    visuals += candidate.visuals.size();
-    if (!candidate.visuals.empty()) link = &candidate;
+  const auto visuals = visuals_of(*model);
+  if (visuals.empty()) refuse_anchor(source, name, "has no visual; an anchor must be visible");
+  const auto& [first, X_MV] = visuals.front();
+  for (const auto& [visual, X_MV_other] : visuals) {
+    if (!visual->material.albedo_map.empty())
+      refuse_anchor(source, name, "has a texture; an anchor must have one colour, its <diffuse>");
+    if (visual->material.diffuse_rgb != first->material.diffuse_rgb)
+      refuse_anchor(source, name, "has several colours; give all its visuals one <diffuse>");
   }
-  if (visuals != 1) {
+  const uav::Vec3 color_rgb = first->material.diffuse_rgb;
+  if (visuals.size() == 1) {
+    const auto shape = shape_and_size(first->geometry);
+    if (!shape) refuse_anchor(source, name, "is not a box, cylinder or sphere");
+    return {{name, shape->first, shape->second, color_rgb}, model->X_WM * X_MV};
+  }
+  const auto around = box_around(visuals);
+  if (!around)
     refuse_anchor(source, name,
-                  "has " + std::to_string(visuals) + " visuals; an anchor must have exactly one");
-  }
-  const Visual& visual = link->visuals.front();
-  const auto shape = shape_and_size(visual.geometry);
-  if (!shape) refuse_anchor(source, name, "is not a box, cylinder or sphere");
-  if (!visual.material.albedo_map.empty()) {
-    refuse_anchor(source, name, "has a texture; an anchor must have one colour, its <diffuse>");
-  }
-  return {{name, shape->first, shape->second, visual.material.diffuse_rgb},
-          model->X_WM * link->X_ML * visual.X_LV};
+                  "has " + std::to_string(visuals.size()) +
+                      " visuals; if an anchor has several, they must be boxes along its axes");
+  return {{name, uav::AnchorShape::kBox, around->size_m, color_rgb},
+          model->X_WM * Pose{around->middle_M, {}}};
 }
 
 }  // namespace tether::sim

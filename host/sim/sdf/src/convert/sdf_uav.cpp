@@ -66,8 +66,9 @@ void merge_link(const SdfSource& source, const sdf::Link& part, const uav::Pose&
   // The airframe's mass is that of all links: only a payload that the body does not include flies
   // differently. A link without a mass has SDF's, which nobody weighed.
   const sdf::ElementPtr inertial = part.Element()->FindElement("inertial");
+  if (!inertial) return;
   const bool is_heavy =
-      inertial && inertial->HasElement("mass") && link.mass_kg > kLightPart * uav.airframe.mass_kg;
+      inertial->HasElement("mass") && link.mass_kg > kLightPart * uav.airframe.mass_kg;
   warn_at(source, part.Element(), Effect(Consequence::kBehavesDifferent, is_heavy),
           "is merged into link '" + uav.body.name + "'; its mass is not added", warn);
 }

@@ -24,7 +24,13 @@ const char* const kAnchors = R"(
     <model name='plane'><link name='l'><visual name='v'><geometry><plane/></geometry></visual></link></model>
     <model name='textured'><link name='l'><visual name='v'>
       <geometry><sphere><radius>0.5</radius></sphere></geometry>
-      <material><pbr><metal><albedo_map>t.png</albedo_map></metal></pbr></material></visual></link></model>)";
+      <material><pbr><metal><albedo_map>t.png</albedo_map></metal></pbr></material></visual></link></model>
+    <model name='gate'><static>true</static><pose>4 0 2 0 0 0</pose><link name='l'>
+      <visual name='post'><pose>0 0.7 0 0 0 0</pose><geometry><box><size>0.2 0.2 2</size></box></geometry></visual>
+      <visual name='beam'><pose>0 0 0.9 0 0 0</pose><geometry><box><size>0.2 1.2 0.2</size></box></geometry></visual></link></model>
+    <model name='motley'><link name='l'>
+      <visual name='v'><geometry><box><size>1 1 1</size></box></geometry><material><diffuse>1 0 0 1</diffuse></material></visual>
+      <visual name='w'><geometry><box><size>1 1 1</size></box></geometry></visual></link></model>)";
 
 TEST(Anchor, IsABoxACylinderOrASphereOfOneColour) {
   const ScratchFolder folder;
@@ -40,10 +46,21 @@ TEST(Anchor, IsABoxACylinderOrASphereOfOneColour) {
   EXPECT_EQ(anchors[1].X_WA.p, (Vec3{1, 1, 1}));
   EXPECT_EQ(anchors[2].anchor.size_m, (Vec3{1, 1, 1}));
   for (const auto& [name, line] :
-       {std::pair{"nothing", 0}, {"two", 12}, {"plane", 15}, {"textured", 16}}) {
+       {std::pair{"nothing", 0}, {"two", 12}, {"plane", 15}, {"textured", 16}, {"motley", 22}}) {
     expect_error(refusal({file, {}, {name}}), file, line, name);
   }
   expect_error(refusal({file, {}, {"bx"}, {"scenario.toml", 7}}), "scenario.toml", 7, "bx");
+}
+
+TEST(Anchor, OfSeveralBoxesIsTheBoxAroundThem) {
+  const ScratchFolder folder;
+  folder.write("t.png", "png");
+  const auto file = folder.write("w.sdf", world_sdf(kAnchors));
+  const auto anchors = load({file, {}, {"gate"}}).world.anchors;
+  ASSERT_EQ(anchors.size(), 1u);
+  EXPECT_EQ(anchors[0].anchor.shape, uav::AnchorShape::kBox);
+  EXPECT_LT(uav::norm(anchors[0].anchor.size_m - Vec3{0.2, 1.4, 2.0}), 1e-12);
+  EXPECT_LT(uav::norm(anchors[0].X_WA.p - Vec3{4.0, 0.1, 2.0}), 1e-12);
 }
 
 }  // namespace

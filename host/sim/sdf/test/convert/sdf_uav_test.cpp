@@ -14,7 +14,9 @@ using SdfUav = UavModel;
 
 TEST_F(SdfUav, MergesFixedLinksAndLeavesOutMovingOnes) {
   const std::string model = with(kUav, "</link>", R"(</link>
-      <link name='arm'><pose>0 0 1 0 0 0</pose>
+      <link name='mast'/>
+      <joint name='bolt' type='fixed'><parent>body</parent><child>mast</child></joint>
+      <link name='arm'><pose>0 0 1 0 0 0</pose><inertial><mass>0.1</mass></inertial>
         <visual name='v'><geometry><sphere><radius>0.1</radius></sphere></geometry></visual>
         <sensor name='imu' type='imu'><pose>0 1 0 0 0 0</pose></sensor></link>
       <link name='wheel'/>
