@@ -31,7 +31,8 @@ bool has_anchor(const TaskSpec& spec) {
   return !std::holds_alternative<tasks::SensorCharacterizationOptions>(spec.options) &&
          !std::holds_alternative<tasks::GoToOptions>(spec.options) &&
          !std::holds_alternative<tasks::HoldOptions>(spec.options) &&
-         !std::holds_alternative<tasks::LandOptions>(spec.options);
+         !std::holds_alternative<tasks::LandOptions>(spec.options) &&
+         !std::holds_alternative<tasks::AvoidByScanOptions>(spec.options);
 }
 
 /// A device stands here until the rig says the sensor's name.

@@ -37,6 +37,9 @@ struct TaskMaker {
   TaskPointer operator()(const tasks::SearchPairOptions& options) const {
     return std::make_unique<tasks::SearchPairTask>(spec.anchor, options);
   }
+  TaskPointer operator()(const tasks::AvoidByScanOptions& options) const {
+    return std::make_unique<tasks::AvoidByScanTask>(options);
+  }
   TaskPointer operator()(const tasks::HoldOptions& options) const {
     return std::make_unique<tasks::HoldTask>(options);
   }

@@ -240,6 +240,28 @@ Fields fields(tasks::SearchPairOptions& options, TaskSpec& spec) {
         imu(options.imu)}});
 }
 
+Fields fields(tasks::AvoidByScanOptions& options, TaskSpec&) {
+  return {{"distance_m", "Goal: distance of the line from the start, along the heading",
+           plain(options.distance_m, 0.1, 1000.0)},
+          speed(options.speed_m_s),
+          {"max_acceleration_m_s2", "Acceleration along the predicted paths",
+           plain(options.max_acceleration_m_s2, 0.1, 50.0)},
+          {"reaction_s", "Time before the UAV follows a command, along those paths",
+           seconds(options.reaction, 0.0)},
+          {"radius_m", "Distance to obstacles that each path keeps",
+           plain(options.radius_m, 0.0, 100.0)},
+          {"margin_m", "Distance beyond that for which it makes detours",
+           plain(options.margin_m, 0.0, 100.0)},
+          {"horizon_s", "Duration of the predicted paths", seconds(options.horizon, 0.01)},
+          {"step_s", "Time between two points of a path", seconds(options.step)},
+          {"directions", "Number of directions of the velocities to choose from",
+           IntegerField{&options.directions, 1, 3600}},
+          {"speeds", "Number of speeds in each direction", IntegerField{&options.speeds, 1, 1000}},
+          {"lidar", "Name of the lidar", TextField{&options.lidar}},
+          {"odometry", "Name of the odometry", TextField{&options.odometry}},
+          time_limit(options.time_limit)};
+}
+
 }  // namespace
 
 std::span<const TaskKind> task_kinds() {
@@ -263,7 +285,9 @@ std::span<const TaskKind> task_kinds() {
       TaskKind{"land_on", "Land on an anchor, which may move", tasks::LandOnOptions{}},
       TaskKind{"land", "Descend until the UAV stands", tasks::LandOptions{}},
       TaskKind{"search_pair", "Turn until this UAV or another one sees the anchor; the other comes",
-               tasks::SearchPairOptions{}}};
+               tasks::SearchPairOptions{}},
+      TaskKind{"avoid_by_scan", "Cross a field of obstacles by the scans of a lidar",
+               tasks::AvoidByScanOptions{}}};
   return kKinds;
 }
 

@@ -8,6 +8,7 @@
 
 #include <tether/base/time.h>
 #include <tether/client/vehicle.h>
+#include <tether/tasks/avoid_by_scan_task.h>
 #include <tether/tasks/closed_path_task.h>
 #include <tether/tasks/face_anchor_task.h>
 #include <tether/tasks/go_to_task.h>
@@ -30,7 +31,8 @@ using TaskOptions =
                  tasks::FaceAnchorOptions, tasks::MoveForwardOptions, tasks::ClosedPathOptions,
                  tasks::GoToOptions, tasks::SearchOptions, tasks::HoldOptions,
                  tasks::InspectOptions, tasks::LandOptions, tasks::LandOnOptions,
-                 tasks::SearchPairOptions>;
+                 tasks::SearchPairOptions,
+                 tasks::AvoidByScanOptions>;
 
 struct TaskSpec {
   TaskOptions options;
