@@ -67,6 +67,7 @@ constexpr Example kExamples[] = {
     {"land_on", "--anchor platform --descent-m-s 0.4"},
     {"search_pair", "--anchor blue_box"},
     {"avoid_by_scan", "--distance-m 12 --speed-m-s 2"},
+    {"fly_through_gates", "--speed-m-s 2.5"},
     {"mission", "look_around.toml"},
     {"characterize", "--camera /dev/video0 --range iio:vl53l0x --out bench.toml"},
     {"calibrate", "--out board.toml"},

@@ -32,7 +32,8 @@ bool has_anchor(const TaskSpec& spec) {
          !std::holds_alternative<tasks::GoToOptions>(spec.options) &&
          !std::holds_alternative<tasks::HoldOptions>(spec.options) &&
          !std::holds_alternative<tasks::LandOptions>(spec.options) &&
-         !std::holds_alternative<tasks::AvoidByScanOptions>(spec.options);
+         !std::holds_alternative<tasks::AvoidByScanOptions>(spec.options) &&
+         !std::holds_alternative<tasks::FlyThroughGatesOptions>(spec.options);
 }
 
 /// A device stands here until the rig says the sensor's name.

@@ -40,6 +40,9 @@ struct TaskMaker {
   TaskPointer operator()(const tasks::AvoidByScanOptions& options) const {
     return std::make_unique<tasks::AvoidByScanTask>(options);
   }
+  TaskPointer operator()(const tasks::FlyThroughGatesOptions& options) const {
+    return std::make_unique<tasks::FlyThroughGatesTask>(options);
+  }
   TaskPointer operator()(const tasks::HoldOptions& options) const {
     return std::make_unique<tasks::HoldTask>(options);
   }

@@ -262,6 +262,24 @@ Fields fields(tasks::AvoidByScanOptions& options, TaskSpec&) {
           time_limit(options.time_limit)};
 }
 
+Fields fields(tasks::FlyThroughGatesOptions& options, TaskSpec& spec) {
+  Fields vision = vision_fields(spec);
+  std::erase_if(vision, [](const Field& field) { return field.name == "anchor"; });  // it takes all
+  return joined(
+      {vision,
+       {speed(options.speed_m_s),
+        {"max_acceleration_m_s2", "Maximum acceleration, ahead and across",
+         plain(options.max_acceleration_m_s2, 0.1, 50.0)},
+        {"stiffness_per_s2", "Acceleration for each metre beside the gate's middle",
+         plain(options.stiffness_per_s2, 0.01, 1000.0)},
+        {"damping_per_s", "Acceleration against each m/s across",
+         plain(options.damping_per_s, 0.0, 1000.0)},
+        {"run_out_m", "Goal: distance behind the last gate", plain(options.run_out_m, 0.0, 1000.0)},
+        imu(options.imu),
+        {"odometry", "Name of the odometry", TextField{&options.odometry}},
+        time_limit(options.time_limit)}});
+}
+
 }  // namespace
 
 std::span<const TaskKind> task_kinds() {
@@ -287,7 +305,9 @@ std::span<const TaskKind> task_kinds() {
       TaskKind{"search_pair", "Turn until this UAV or another one sees the anchor; the other comes",
                tasks::SearchPairOptions{}},
       TaskKind{"avoid_by_scan", "Cross a field of obstacles by the scans of a lidar",
-               tasks::AvoidByScanOptions{}}};
+               tasks::AvoidByScanOptions{}},
+      TaskKind{"fly_through_gates", "Fly through all anchors, as through gates",
+               tasks::FlyThroughGatesOptions{}}};
   return kKinds;
 }
 

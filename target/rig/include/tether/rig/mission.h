@@ -11,6 +11,7 @@
 #include <tether/tasks/avoid_by_scan_task.h>
 #include <tether/tasks/closed_path_task.h>
 #include <tether/tasks/face_anchor_task.h>
+#include <tether/tasks/fly_through_gates_task.h>
 #include <tether/tasks/go_to_task.h>
 #include <tether/tasks/hold_task.h>
 #include <tether/tasks/inspect_task.h>
@@ -32,7 +33,7 @@ using TaskOptions =
                  tasks::GoToOptions, tasks::SearchOptions, tasks::HoldOptions,
                  tasks::InspectOptions, tasks::LandOptions, tasks::LandOnOptions,
                  tasks::SearchPairOptions,
-                 tasks::AvoidByScanOptions>;
+                 tasks::AvoidByScanOptions, tasks::FlyThroughGatesOptions>;
 
 struct TaskSpec {
   TaskOptions options;

@@ -1,0 +1,161 @@
+#include "motion.h"
+#include "pose_track.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <tether/tasks/fly_through_gates_task.h>
+#include <tether/tasks/task_context.h>
+
+namespace tether::tasks {
+namespace {
+
+/// As many readings of a fast IMU wait while an image is computed.
+constexpr std::uint32_t kImuQueue = 256;
+/// Share of the difference to the gate's place that each sighting corrects.
+constexpr double kTrustInSight = 0.3;
+/// Acceleration for each m/s of speed ahead that is missing.
+constexpr double kAheadGain_per_s = 2.0;
+/// A gate is passed when its middle is so far behind [m].
+constexpr double kBehind_m = 0.3;
+
+/// `v`, no longer than `most`.
+uav::Vec3 limited(const uav::Vec3& v, double most) {
+  const double length = norm(v);
+  return length <= most ? v : (most / length) * v;
+}
+
+/// The way from the camera to the middle of the ROI, in the world: by the direction of its middle,
+/// and by the horizontal distance.
+uav::Vec3 way_W(const uav::SensorDescription& camera, const uav::Quat& q_WB, const vision::Roi& roi,
+                double distance_m) {
+  const auto& model = std::get<uav::CameraProperties>(camera.properties).model;
+  const uav::Vec3 direction_W =
+      rotate(q_WB * camera.X_BS.q * uav::q_body_from_optical(), model.unproject(roi.center));
+  return (distance_m / std::hypot(direction_W.x, direction_W.y)) * direction_W;
+}
+
+}  // namespace
+
+FlyThroughGatesTask::FlyThroughGatesTask(const FlyThroughGatesOptions& options)
+    : options_(options), limit_(options.time_limit, options.max_images) {}
+
+FlyThroughGatesTask::~FlyThroughGatesTask() = default;
+
+const uav::Anchor& FlyThroughGatesTask::gate(TaskContext& context) const {
+  return context.vehicle().catalogue().anchors[passed_];
+}
+
+Progress FlyThroughGatesTask::initialise(TaskContext& context) {
+  limit_.start(context.vehicle().now());
+  passed_ = 0;
+  images_ = sightings_ = 0;
+  p_H0G_.reset();
+  aim_H0_ = {};
+  if (context.vehicle().catalogue().anchors.empty())
+    return TaskOutcome::failed({Failure::Kind::kInvalid, "the scenario has no anchors to fly to"});
+  const auto imu = context.sensor(options_.imu, uav::SensorKind::kImu);
+  if (!imu) return TaskOutcome::failed(imu.failure());
+  if (const Status queue = context.vehicle().set_queue(options_.imu, kImuQueue); !queue)
+    return TaskOutcome::failed(queue.failure());
+  track_ = std::make_unique<PoseTrack>((*imu)->X_BS.q);
+  const auto start = context.vehicle().read<uav::OdometrySample>(options_.odometry);
+  if (!start) return TaskOutcome::failed(start.failure());
+  track_->update(*start);
+  X_WH0_ = {start->p_WS, uav::from_axis_angle({0, 0, 1}, uav::yaw_rad(start->q_WS))};
+  return std::nullopt;
+}
+
+Progress FlyThroughGatesTask::step(TaskContext& context) {
+  if (Progress end = limit_.next_round(context.vehicle().now())) return end;
+  if (const Status seen = look(context); !seen) return TaskOutcome::failed(seen.failure());
+  const uav::Vec3 p_H0B = transform(inverse(X_WH0_), track_->now().p_WB);
+  context.note_odometry(p_H0B, uav::yaw_rad(inverse(X_WH0_.q) * track_->now().q_WB));
+  if (p_H0G_ && p_H0B.x > p_H0G_->x + kBehind_m) {
+    const bool is_last = passed_ + 1 == context.vehicle().catalogue().anchors.size();
+    if (is_last && p_H0B.x > p_H0G_->x + options_.run_out_m) {
+      ++passed_;
+      return TaskOutcome::goal_reached();
+    }
+    if (!is_last) {
+      context.note_event(name(), "loop", "gate", {{"passed", static_cast<double>(++passed_)}});
+      aim_H0_ = *p_H0G_;
+      p_H0G_.reset();
+    }
+  }
+  const Status steering = steer(context);
+  return steering ? std::nullopt : Progress(TaskOutcome::failed(steering.failure()));
+}
+
+/// The next image, and what has happened until it was computed.
+Status FlyThroughGatesTask::look(TaskContext& context) {
+  const auto camera = context.camera();
+  if (!camera) return camera.failure();
+  const auto tracker = context.tracker(gate(context).name);
+  if (!tracker) return tracker.failure();
+  const Result<uav::CameraSample> image = context.capture((*camera)->name);
+  if (!image) return image.failure();
+  ++images_;
+  const std::optional<vision::Roi> roi = context.detect(**tracker, *image);
+  if (const Status followed = follow_motion(context); !followed) return followed;
+  if (roi) see(context, *roi, image->index, image->sampled_at);
+  return ok_status();
+}
+
+Status FlyThroughGatesTask::follow_motion(TaskContext& context) {
+  const auto readings = client::read_all<uav::ImuSample>(context.vehicle(), options_.imu);
+  if (!readings) return readings.failure();
+  for (const uav::ImuSample& reading : *readings) track_->update(reading);
+  const auto odometry =
+      context.vehicle().read<uav::OdometrySample>(options_.odometry, client::Read::kIfAvailable);
+  if (odometry) track_->update(*odometry);
+  const bool is_good = odometry || odometry.failure().kind == Failure::Kind::kNothingYet;
+  return is_good ? ok_status() : Status(odometry.failure());
+}
+
+/// A gate that is cut off has no distance, and its middle is not that of the ROI.
+void FlyThroughGatesTask::see(TaskContext& context, const vision::Roi& roi,
+                              std::uint64_t image_index, SimTime sampled_at) {
+  const uav::SensorDescription& camera = **context.camera();
+  const vision::RelativePosition position = vision::relative_position(camera, gate(context), roi);
+  context.note_roi(roi, image_index);
+  context.note_estimate(gate(context).name, image_index, position, true);
+  if (!position.distance_m || roi.cut_left_or_right) return;
+  const PoseTrack::State& then = track_->at(sampled_at);
+  const uav::Vec3 p_WG = then.p_WB + rotate(then.q_WB, camera.X_BS.p) +
+                         way_W(camera, then.q_WB, roi, *position.distance_m);
+  const uav::Vec3 seen_H0 = transform(inverse(X_WH0_), p_WG);
+  ++sightings_;
+  p_H0G_ = p_H0G_ ? *p_H0G_ + kTrustInSight * (seen_H0 - *p_H0G_) : seen_H0;
+}
+
+/// Sideways and up a spring and a damper towards the middle of the gate; ahead at constant speed.
+Status FlyThroughGatesTask::steer(TaskContext& context) {
+  const PoseTrack::State& state = track_->now();
+  const uav::Quat q_H0W = inverse(X_WH0_.q);
+  const uav::Vec3 aside_H0 = p_H0G_.value_or(aim_H0_) - transform(inverse(X_WH0_), state.p_WB);
+  const uav::Vec3 v_H0 = rotate(q_H0W, state.v_WB_m_s);
+  const uav::Vec3 across =
+      limited(options_.stiffness_per_s2 * uav::Vec3{0.0, aside_H0.y, aside_H0.z} -
+                  options_.damping_per_s * uav::Vec3{0.0, v_H0.y, v_H0.z},
+              options_.max_acceleration_m_s2);
+  const double ahead_m_s2 =
+      std::clamp(kAheadGain_per_s * (options_.speed_m_s - v_H0.x), -options_.max_acceleration_m_s2,
+                 options_.max_acceleration_m_s2);
+  uav::Setpoint setpoint;
+  setpoint.mask = uav::kAcceleration | uav::kYaw;
+  setpoint.in_heading = false;
+  setpoint.acceleration_m_s2 = rotate(X_WH0_.q, uav::Vec3{ahead_m_s2, across.y, across.z});
+  setpoint.yaw_rad = uav::yaw_rad(X_WH0_.q);
+  return context.vehicle().command(setpoint);
+}
+
+void FlyThroughGatesTask::finalise(TaskContext& context, TaskOutcome& outcome) {
+  fail_on(stop(context), outcome);
+  outcome.results["duration_s"] = to_seconds(limit_.elapsed(context.vehicle().now()));
+  outcome.results["images"] = images_;
+  outcome.results["sightings"] = sightings_;
+  outcome.results["gates"] = static_cast<double>(passed_);
+}
+
+}  // namespace tether::tasks
