@@ -46,6 +46,9 @@ record::Header header(Choices& choices) {
     header.sensors.push_back({name(choices), name(choices), "camera", choices.coin(),
                               time<Duration>(choices), time<Duration>(choices),
                               time<Duration>(choices), time<Duration>(choices)});
+  for (std::size_t i = 0; i < header.sensors.size(); i += 2)
+    header.sensors[i].driver = {header.sensors[i].phase, header.sensors[i].period, -20'000, 0.3,
+                                0.2};
   header.reports_contacts = header.suts.size() % 2 == 0;
   return header;
 }
@@ -73,6 +76,8 @@ record::Interaction interaction(Choices& choices) {
   m.stamped = choices.coin();
   m.wall_at_arrival = time<WallTime>(choices);
   m.wall_at_release = time<WallTime>(choices);
+  if (m.latest) m.sample_stamp = m.available_at;
+  if (m.latest && m.stamped) m.repeated_index = m.sequence;
   return m;
 }
 

@@ -117,7 +117,8 @@ TEST(Codec, WelcomeFieldByField) {
   welcome.catalogue.sensors = {{"camera",
                                 {{1, 2, 3}, {0, 1, 0, 0}},
                                 30.0,
-                                uav::CameraProperties{{640, 480, 1, 2, 3, 4, 5, 6, 7, 8, 9}}},
+                                uav::CameraProperties{{640, 480, 1, 2, 3, 4, 5, 6, 7, 8, 9}},
+                                true},
                                {"imu", {}, 0.0, uav::ImuProperties{}},
                                {"down", {}, 10.0, uav::RangeProperties{0.1, 8.0}}};
   welcome.catalogue.anchors = {{"box", uav::AnchorShape::kCylinder, {1, 2, 3}, {0, 0.5, 1}}};
@@ -130,7 +131,8 @@ TEST(Codec, WelcomeFieldByField) {
   EXPECT_EQ(got.real_time_factor, 0.3);
   EXPECT_EQ(got.start, welcome.start);
   ASSERT_EQ(got.catalogue.sensors.size(), 3u);
-  const auto& [name, X_BS, rate_hz, properties] = got.catalogue.sensors[0];
+  const auto& [name, X_BS, rate_hz, properties, own_stamps] = got.catalogue.sensors[0];
+  EXPECT_TRUE(own_stamps);
   EXPECT_EQ(std::tie(name, X_BS, rate_hz),
             std::tuple("camera", welcome.catalogue.sensors[0].X_BS, 30.0));
   const auto& [width, height, fx, fy, cx, cy, k1, k2, k3, p1, p2] =

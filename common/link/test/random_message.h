@@ -73,6 +73,7 @@ class RandomMessage {
     if (kind == 2) out.properties = uav::RangeProperties{0.1, 0.2 + number()};
     if (kind == 3) out.properties = uav::ScanProperties{.columns = 9, .rows = 2, .max_m = number()};
     if (kind == 4) out.properties = uav::OdometryProperties{};
+    out.own_stamps = random_.bits() % 2 == 0;
     return out;
   }
 

@@ -29,6 +29,7 @@ Verdict audit(const record::Record& record) {
   check_radio(record, grid, report);
   check_channel(record, grid, report);
   check_battery(record, report);
+  check_stamps(record, report);
   if (verdict.synchronised) {
     check_interactions(record, grid, report);
     check_rows(record, report);

@@ -21,6 +21,10 @@ void check_stops(const record::Record& record, const Boundaries& grid, Report& r
 /// Rule 1: whether each read returned the right measurement, given the previous reads.
 void check_newness(const record::Record& record, Report& report);
 
+/// Rule 1: a sample that a driver loses was not read, and a repeated one has the content of the one
+/// before. Rule 0: its stamp is the one that the driver gives it. For any policy.
+void check_stamps(const record::Record& record, Report& report);
+
 /// Rule 5 on boards that several SUTs share: on a virtual one, each computes with its share of the
 /// cores; on a real one, all of them stop together.
 void check_boards(const record::Record& record, Report& report);

@@ -1,4 +1,5 @@
 #include "checks.h"
+#include "driver_draws.h"
 #include "file_order.h"
 
 #include <algorithm>
@@ -208,12 +209,25 @@ class ConsistencyCheck {
       return candidate.uav == message.uav && candidate.name == message.sensor;
     });
     if (sensor == sensors.end() || !sensor->periodic || sensor->period <= Duration(0)) return false;
-    const Wide due = wide(sensor->phase) + Wide{message.sample_index} * wide(sensor->period);
-    const bool is_next =
-        grid_.at_or_before(due - wide(sensor->period)) <= wide(message.st_at_arrival) ||
-        message.sample_index == 0 || has_earlier_request(message, message.sample_index - 1);
+    const auto instant = [&](std::uint64_t index) {
+      return wide(sensor->phase) + Wide{index} * wide(sensor->period);
+    };
+    const Wide due = instant(message.sample_index);
+    const auto before = arrived_before(*sensor, message.sample_index);
+    const bool is_next = !before ||
+                         grid_.at_or_before(instant(*before)) <= wide(message.st_at_arrival) ||
+                         has_earlier_request(message, *before);
     return wide(*message.sampled_at) == due && is_next &&
            grid_.at_or_before(due) == wide(message.st_at_release);
+  }
+
+  // The newest measurement before `index` that the driver did not lose.
+  std::optional<std::uint64_t> arrived_before(const record::SensorInfo& sensor,
+                                              std::uint64_t index) const {
+    const DriverDraws driver(record_.header, sensor);
+    while (index-- > 0)
+      if (!driver.loses(index)) return index;
+    return std::nullopt;
   }
 
   // Threads that wait for the same sensor get different measurements, in the order of requests.

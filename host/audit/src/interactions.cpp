@@ -159,9 +159,16 @@ class InteractionCheck {
                   ns(*m.available_at), ns(m.reply_at));
   }
 
-  // Rule 1: the delay is within the sensor's bounds. (Negative ones: check_sample.)
+  // Rule 1: the delay is within the sensor's bounds. (Negative ones: check_sample.) A repeated
+  // measurement is delayed from its own instant on.
   void check_delay(const Entry& entry, const record::SensorInfo& sensor) {
-    const Wide delay = wide(*entry.message.available_at) - wide(*entry.message.sampled_at);
+    const Interaction& m = entry.message;
+    constexpr Wide kMostRepeated = Wide{1} << 32;
+    const Wide later = Wide{m.sample_index} - Wide{m.repeated_index.value_or(m.sample_index)};
+    if (later < 0 || later > kMostRepeated)
+      return report_.add(1, entry, "measurement {} cannot repeat measurement {}", m.sample_index,
+                         *m.repeated_index);
+    const Wide delay = wide(*m.available_at) - wide(*m.sampled_at) - later * wide(sensor.period);
     if (delay >= 0 && (delay < wide(sensor.delay_min) || delay > wide(sensor.delay_max)))
       report_.add(1, entry, "available {} after the sample, but the sensor's delay is {} to {}",
                   ns(delay), ns(sensor.delay_min), ns(sensor.delay_max));
@@ -170,12 +177,12 @@ class InteractionCheck {
   // Rule 1: sampled at the time of that measurement.
   void check_timing(const Entry& entry, const record::SensorInfo& sensor) {
     const Interaction& m = entry.message;
-    const Wide instant = sensor.periodic
-                             ? wide(sensor.phase) + Wide{m.sample_index} * wide(sensor.period)
-                             : wide(m.request_at);
+    const std::uint64_t index = m.repeated_index.value_or(m.sample_index);
+    const Wide instant = sensor.periodic ? wide(sensor.phase) + Wide{index} * wide(sensor.period)
+                                         : wide(m.request_at);
     if (wide(*m.sampled_at) != instant)
-      report_.add(1, entry, "measurement {} sampled at {}, but the sensor measures at {}",
-                  m.sample_index, ns(*m.sampled_at), ns(instant));
+      report_.add(1, entry, "measurement {} sampled at {}, but the sensor measures at {}", index,
+                  ns(*m.sampled_at), ns(instant));
   }
 
   // Rule 2: a command takes effect at the first boundary that is not before its time.

@@ -1,4 +1,5 @@
 #include "checks.h"
+#include "driver_draws.h"
 #include "suts.h"
 
 #include <algorithm>
@@ -41,14 +42,17 @@ void check_index(const Entry& entry, SensorHistory& sensor, Report& report) {
 
 // A read without a measurement is correct only if no suitable one was available for certain, even
 // with the sensor's largest delay.
-void check_missed(const Entry& entry, const SensorHistory& sensor, Report& report) {
+void check_missed(const Entry& entry, const SensorHistory& sensor, const DriverDraws& driver,
+                  Report& report) {
   const record::SensorInfo& info = *sensor.info;
   const Wide period = wide(info.period);
   if (!info.periodic || period <= 0 || info.delay_max == Duration::max()) return;
   const Wide since_first = wide(entry.message.request_at) - wide(info.phase) - wide(info.delay_max);
   if (since_first < 0) return;
-  const Wide newest_available = since_first / period;
+  Wide newest_available = since_first / period;
   const Wide wanted = !entry.message.latest && sensor.newest ? Wide{*sensor.newest} + 1 : Wide{0};
+  while (newest_available >= wanted && driver.loses(static_cast<std::uint64_t>(newest_available)))
+    --newest_available;
   if (newest_available >= wanted)
     report.add(1, entry, "no measurement at {}, although measurement {} of \"{}\" was available",
                ns(entry.message.request_at), static_cast<std::uint64_t>(newest_available),
@@ -80,7 +84,8 @@ void check_newness(const record::Record& record, Report& report) {
       if (has_times) {
         check_index(*entry, sensor->second, report);
       } else if (entry->message.only_if_available) {
-        check_missed(*entry, sensor->second, report);
+        check_missed(*entry, sensor->second, DriverDraws(record.header, *sensor->second.info),
+                     report);
       }
     }
   }

@@ -32,10 +32,16 @@ constexpr Duration kFlushPeriod = std::chrono::seconds(1);
 // In free running the state at the next read is not known, and nothing is drawn ahead.
 Sampler::Sensor make_sensor(const sim::Sensor& sensor, const std::string& uav,
                             const uav::SensorTiming& timing, const RunOptions& options) {
+  const auto driver = [&](std::optional<Duration> period) {
+    return uav::Driver(sensor.driver, period, options.seed, uav, sensor.name);
+  };
   if (options.policy == sync::SyncPolicy::kFreeRunning)
-    return {.name = sensor.name, .schedule = SensorSchedule::in_free_running(timing)};
+    return {.name = sensor.name,
+            .schedule = SensorSchedule::in_free_running(timing, driver(std::nullopt))};
+  const auto* periodic = std::get_if<uav::PeriodicTiming>(&timing);
   return {.name = sensor.name,
-          .schedule = {timing, options.seed, random_stream(uav, sensor.name, "delay")},
+          .schedule = {timing, options.seed, random_stream(uav, sensor.name, "delay"),
+                       driver(periodic ? std::optional(periodic->period) : std::nullopt)},
           .is_drawn = sensor.kind() == uav::SensorKind::kCamera};
 }
 

@@ -54,7 +54,7 @@ std::vector<record::BuildPart> parts_of(const link::Hello& hello) {
 }
 
 record::SensorInfo describe(const std::string& uav, const uav::SensorDescription& sensor,
-                            const uav::SensorTiming& timing) {
+                            const uav::SensorTiming& timing, const uav::DriverModel& driver) {
   record::SensorInfo info{.uav = uav, .name = sensor.name, .kind = std::string(sensor.kind_name())};
   std::tie(info.delay_min, info.delay_max) =
       bounds(std::visit([](const auto& t) { return t.delay; }, timing));
@@ -63,6 +63,12 @@ record::SensorInfo describe(const std::string& uav, const uav::SensorDescription
     info.period = periodic->period;
     info.phase = periodic->phase;
   }
+  if (driver != uav::DriverModel{})
+    info.driver = {.stamp_offset = driver.stamp_offset,
+                   .stamp_jitter = driver.stamp_jitter,
+                   .stamp_drift_ppb = driver.stamp_drift_ppb,
+                   .lost_probability = driver.lost_probability,
+                   .repeated_probability = driver.repeated_probability};
   if (const auto* camera = std::get_if<uav::CameraProperties>(&sensor.properties))
     info.camera = describe(sensor.X_BS, *camera);
   return info;
@@ -155,8 +161,9 @@ record::Header Coordinator::Impl::make_header() const {
     }
     const uav::Catalogue catalogue = sim::make_catalogue(world(), uav);
     for (std::size_t i = 0; i < catalogue.sensors.size(); ++i)
-      header.sensors.push_back(
-          describe(uav.name, catalogue.sensors[i], options_.uavs[session.uav].timings[i]));
+      header.sensors.push_back(describe(uav.name, catalogue.sensors[i],
+                                        options_.uavs[session.uav].timings[i],
+                                        uav.sensors[i].driver));
   }
   for (const Board& board : options_.boards) {
     const bool is_shared =

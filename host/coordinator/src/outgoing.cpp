@@ -9,17 +9,19 @@ namespace tether::coordinator {
 
 namespace {
 
-/// None: not an image, or not one to record.
+/// None: not an image, or not one to record. Its time is that of its content, not its stamp.
 std::optional<uav::CameraSample> image_to_record(Session& session, const link::Request& request,
-                                                 const link::Reply& reply,
+                                                 const link::Reply& reply, SimTime sampled_at,
                                                  const RunOptions& options) {
   if (!options.record_images || !reply.sample) return std::nullopt;
   const auto* image = std::get_if<uav::CameraSample>(&*reply.sample);
   if (image == nullptr) return std::nullopt;
   auto& last = session.recorded_image_at[std::get<link::ReadSensor>(request.body).sensor];
-  if (last && image->sampled_at < *last + options.image_period) return std::nullopt;
-  last = image->sampled_at;
-  return *image;
+  if (last && sampled_at < *last + options.image_period) return std::nullopt;
+  last = sampled_at;
+  std::optional recorded = *image;
+  recorded->sampled_at = sampled_at;
+  return recorded;
 }
 
 }  // namespace
@@ -60,8 +62,8 @@ void Coordinator::Impl::reply(Session& session, std::size_t open_index, SimTime 
                       .computing = session.time_given()};
   if (entry.kind == record::kBattery) message.battery = stepper_.read_battery(session.uav, entry);
   if (pending.is_promised) radio_.receive(session.uav, entry, message);
-  const std::optional<uav::CameraSample> image =
-      image_to_record(session, pending.request, message, options_);
+  const std::optional<uav::CameraSample> image = image_to_record(
+      session, pending.request, message, entry.sample_state_at.value_or(SimTime{}), options_);
   entry.st_at_release = st;
   entry.grid_error = std::max(entry.grid_error, same_instant(entry.reply_at) - st);
   entry.wall_at_release = host_clock_();

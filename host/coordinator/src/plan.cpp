@@ -28,6 +28,8 @@ ExecTime plan_read(std::size_t uav, record::Interaction& entry, const link::Read
   entry.sample_index = measurement->index;
   entry.sampled_at = measurement->sampled_at;
   entry.available_at = measurement->available_at;
+  entry.sample_stamp = measurement->stamp;
+  if (measurement->repeats > 0) entry.repeated_index = measurement->content();
   return std::max(entry.request_at, same_instant(measurement->available_at));
 }
 

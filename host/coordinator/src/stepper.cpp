@@ -178,8 +178,16 @@ std::optional<uav::Sample> Stepper::measure(std::size_t uav, record::Interaction
   entry.sample_state_at = state.at;
   entry.grid_error = std::max(entry.grid_error, read->measurement.sampled_at - state.at);
   auto sample = guarded([&](sim::Simulator& s) {
-    return s.measure(state, uav, read->sensor, read->measurement.index);
+    return s.measure(state, uav, read->sensor, read->measurement.content());
   });
+  if (read->measurement.stamp) {
+    std::visit(
+        [&](auto& content) {
+          content.sampled_at = *read->measurement.stamp;
+          content.index = read->measurement.index;
+        },
+        sample);
+  }
   sampler.answered(entry.sequence, same_instant(entry.reply_at));
   note_change(uav);
   if (const auto* image = std::get_if<uav::CameraSample>(&sample)) {

@@ -74,7 +74,8 @@ TEST_F(CoordinatorTest, SendsACatalogueWithTheCamerasOfTheRecord) {
   EXPECT_EQ(welcome.catalogue.anchors.size(), 1u);
   EXPECT_FALSE(welcome.free_running);
 
-  const auto& [name, X_BS, rate_hz, properties] = welcome.catalogue.sensors.at(kCamera);
+  const auto& [name, X_BS, rate_hz, properties, own_stamps] = welcome.catalogue.sensors.at(kCamera);
+  EXPECT_FALSE(own_stamps);
   const uav::CameraModel& model = std::get<uav::CameraProperties>(properties).model;
   const auto& camera = recorder_.header.sensors.at(kCamera).camera;
   ASSERT_TRUE(camera);
@@ -84,6 +85,44 @@ TEST_F(CoordinatorTest, SendsACatalogueWithTheCamerasOfTheRecord) {
   EXPECT_EQ(camera->fx_px, model.fx_px);
   EXPECT_EQ(camera->cy_px, model.cy_px);
   EXPECT_FALSE(recorder_.header.sensors.at(kRange).camera);
+}
+
+// The record has the truth; the SUT sees what the driver says.
+TEST_F(CoordinatorTest, ASutSeesStampsOfTheDriverAndTheRecordHasBoth) {
+  sim::World world = sim::make_fake_world(1, milliseconds(1));
+  const uav::DriverModel model{
+      .stamp_offset = milliseconds(20), .lost_probability = 0.3, .repeated_probability = 0.4};
+  world.uavs[0].sensors[kCamera].driver = model;
+  const std::string name = world.uavs[0].sensors[kCamera].name;
+  make(std::move(world));
+  const uav::Driver driver(model, kCameraTiming.period, options_.seed, "uav0", name);
+  ScriptedServer::Script script(30, read(Duration(0), kCamera));
+  script.push_back(finish(Duration(0)));
+  run(std::move(script));
+
+  EXPECT_TRUE(std::get<link::Welcome>(server_->sent.at(1).front())
+                  .catalogue.sensors.at(kCamera)
+                  .own_stamps);
+  ASSERT_TRUE(recorder_.header.sensors.at(kCamera).driver);
+  EXPECT_FALSE(recorder_.header.sensors.at(kImu).driver);
+  std::uint64_t index = 0;
+  int repeated = 0;
+  for (std::size_t i = 0; i < 30; ++i, ++index) {
+    while (driver.loses(index)) ++index;
+    const record::Interaction& entry = recorder_.interactions.at(i);
+    const std::uint64_t content = driver.content_of(index);
+    ASSERT_EQ(entry.sample_index, index);
+    ASSERT_EQ(entry.repeated_index.value_or(index), content);
+    repeated += entry.repeated_index ? 1 : 0;
+    ASSERT_EQ(entry.sampled_at, uav::sampling_instant(kCameraTiming, content));
+    ASSERT_EQ(entry.sample_state_at, entry.sampled_at);
+    ASSERT_EQ(entry.sample_stamp, driver.stamp(uav::sampling_instant(kCameraTiming, index), index));
+    const auto& reply = std::get<link::Reply>(server_->sent.at(1).at(i + 1));
+    const auto& image = std::get<uav::CameraSample>(*reply.sample);
+    ASSERT_EQ(image.sampled_at, entry.sample_stamp);
+    ASSERT_EQ(image.index, index);
+  }
+  EXPECT_GT(repeated, 0);
 }
 
 // Paper, Fig. 8: the measurement starts at the request, and the simulation advances until its data

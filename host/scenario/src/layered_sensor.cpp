@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include <fmt/format.h>
+
 // Each layer replaces what it sets. Values that exclude each other are found at the end, because a
 // later layer may still change one of them.
 namespace tether::scenario {
@@ -22,6 +24,22 @@ double rate_hz(Duration period) {
   const double written = std::round(exact * 1e3) / 1e3;
   const bool is_same = written > 0.0 && duration_from_seconds(1.0 / written) == period;
   return is_same ? written : exact;
+}
+
+/// What needs a period.
+void check_driver(const uav::DriverModel& driver, const Finished& sensor) {
+  const auto* periodic = std::get_if<uav::PeriodicTiming>(&sensor.timing);
+  const bool skips = driver.lost_probability > 0.0 || driver.repeated_probability > 0.0;
+  if (skips && !periodic)
+    sensor.refuse({"lost_probability", "repeated_probability"},
+                  "measures on demand, so no sample is lost or repeated. Set "
+                  "timing = \"periodic\", or remove the probability.");
+  if (periodic && 2 * driver.stamp_jitter > periodic->period)
+    sensor.refuse(
+        {"stamp_jitter_ms"},
+        fmt::format("has stamp_jitter_ms = {:.6g}, but measures every {:.6g} ms. The "
+                    "jitter must be at most half of that.",
+                    1e3 * to_seconds(driver.stamp_jitter), 1e3 * to_seconds(periodic->period)));
 }
 
 }  // namespace
@@ -49,6 +67,7 @@ void LayeredSensor::lay_timing(const SensorProfile& layer) {
 
 uav::SensorTiming LayeredSensor::finish() {
   const Finished finished{sensor_->name, timing_, laid_};
+  check_driver(sensor_->driver, finished);
   std::visit([&](auto& model) { complete(model, finished); }, sensor_->model);
   if (is_timed_) {
     const auto* periodic = std::get_if<uav::PeriodicTiming>(&timing_);

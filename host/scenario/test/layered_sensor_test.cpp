@@ -158,6 +158,30 @@ TEST_F(Layered, EveryKeyOfALidarArrives) {
   expect_refusal(4, "rays", [&] { lay(lidar, {layer("scan", "rays = [9]\n")}); });
 }
 
+// Of a sensor of any kind, and each key replaces its own value only.
+TEST_F(Layered, EveryKeyOfADriverArrivesAndNeedsATimingThatFits) {
+  sim::Sensor barometer{"barometer", {}, 10.0, sim::BarometerModel{}};
+  lay(barometer, {layer("barometer",
+                        "stamp_offset_ms = -12.5\nstamp_jitter_ms = 50\n"
+                        "stamp_drift_ppm = -40.5\nlost_probability = 0.1\n"),
+                  layer("barometer", "stamp_drift_ppm = 3\nrepeated_probability = 0.2\n")});
+  EXPECT_EQ(barometer.driver,
+            (uav::DriverModel{Duration(-12'500'000), milliseconds(50), 3'000, 0.1, 0.2}));
+
+  const auto lay_on_imu = [&](const std::string& lines) {
+    sim::Sensor imu = make_imu("imu");
+    lay(imu, {layer("imu", lines)});
+  };
+  const std::string fast = "timing = \"periodic\"\nrate_hz = 200\n";
+  const std::string on_demand = "timing = \"on_demand\"\n";
+  EXPECT_NO_THROW(lay_on_imu(fast + "stamp_jitter_ms = 2.5\n"));
+  expect_refusal(6, "imu", [&] { lay_on_imu(fast + "stamp_jitter_ms = 2.6\n"); });
+  EXPECT_NO_THROW(lay_on_imu(on_demand + "stamp_jitter_ms = 20\n"));
+  expect_refusal(5, "imu", [&] { lay_on_imu(on_demand + "lost_probability = 0.1\n"); });
+  expect_refusal(5, "imu", [&] { lay_on_imu(on_demand + "repeated_probability = 0.1\n"); });
+  expect_refusal(4, "lost_probability", [&] { lay_on_imu("lost_probability = 1\n"); });
+}
+
 // The SDF's camera sees up to 100 m.
 TEST_F(Layered, LimitsOfDepthsArriveAndTheCameraSeesAsFar) {
   for (const auto kind : {uav::CameraKind::kDepth, uav::CameraKind::kRgbd}) {

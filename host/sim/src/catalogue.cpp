@@ -38,7 +38,8 @@ uav::SensorDescription describe_sensor(const World& world, const Sensor& sensor)
   using Properties = decltype(uav::SensorDescription::properties);
   return {sensor.name, sensor.X_BS, sensor.update_rate_hz,
           std::visit([&](const auto& model) -> Properties { return describe(world, model); },
-                     sensor.model)};
+                     sensor.model),
+          sensor.driver != uav::DriverModel{}};
 }
 
 }  // namespace

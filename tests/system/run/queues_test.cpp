@@ -10,7 +10,8 @@ class Queues : public testing::Test {
  protected:
   /// 20 images of each camera a second, which the right one delivers 12 ms later, and 200 IMU
   /// measurements. Each call takes the program `computing_ms`.
-  nlohmann::json fly(int queue, const std::string& computing_ms) const {
+  nlohmann::json fly(int queue, const std::string& computing_ms,
+                     const std::string& of_imu = "") const {
     const std::filesystem::path shipped = TETHER_SOURCE_DIR "/data/models/hummingbird";
     std::filesystem::copy(shipped, folder_ / "uav",
                           std::filesystem::copy_options::recursive |
@@ -29,7 +30,8 @@ class Queues : public testing::Test {
         "model = \"" +
         model.string() +
         "\"\nposition_m = [1.2, 0, 1.2]\n"
-        "[uav.sensors.imu]\ntiming = \"periodic\"\nrate_hz = 200\n"
+        "[uav.sensors.imu]\ntiming = \"periodic\"\nrate_hz = 200\n" +
+        of_imu +
         "[uav.sensors.right]\ndelay = { kind = \"constant\", ms = 12 }\n"
         "[sut]\ncommand = [\"" QUEUES_SUT_PROGRAM "\", \"40\", \"" +
         std::to_string(queue) +
@@ -69,6 +71,17 @@ TEST_F(Queues, OverflowOnASlowComputer) {
   const auto details = fly(10, "6");
   EXPECT_EQ(details["apart"], 0);
   EXPECT_GT(details["lost"].get<int>(), 0);
+}
+
+// Of some 400 IMU measurements, a tenth never arrives. The audit checks each stamp, loss and
+// repetition.
+TEST_F(Queues, ADriverLosesAndRepeatsWhatItsProfileSays) {
+  const auto details = fly(50, "0.1",
+                           "stamp_offset_ms = -5\nstamp_jitter_ms = 1\nstamp_drift_ppm = 50\n"
+                           "lost_probability = 0.1\nrepeated_probability = 0.1\n");
+  EXPECT_EQ(details["apart"], 0);
+  EXPECT_NEAR(details["lost"].get<double>(), 40.0, 18.0);
+  EXPECT_NEAR(details["got"].get<double>() + details["lost"].get<double>(), 400.0, 14.0);
 }
 
 }  // namespace

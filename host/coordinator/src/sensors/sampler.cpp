@@ -61,7 +61,7 @@ void Sampler::sample_periodic(std::size_t sensor, SimTime st, SimTime earliest,
 std::uint64_t Sampler::first_needed(std::size_t sensor, SimTime earliest) const {
   std::uint64_t first = sensors_[sensor].schedule.first_readable(earliest);
   for (const Read& read : reads_)
-    if (read.sensor == sensor) first = std::min(first, read.measurement.index);
+    if (read.sensor == sensor) first = std::min(first, read.measurement.content());
   return first;
 }
 
@@ -72,7 +72,7 @@ const Sampler::Read* Sampler::find(std::uint64_t call) const {
 }
 
 const sim::Snapshot* Sampler::find_state(const Read& read) const {
-  if (!read.on_demand) return sensors_[read.sensor].captures.find(read.measurement.index);
+  if (!read.on_demand) return sensors_[read.sensor].captures.find(read.measurement.content());
   return read.state.get();
 }
 
@@ -88,7 +88,8 @@ void Sampler::answered(std::uint64_t call, SimTime t) {
   Sensor& sensor = sensors_[read->sensor];
   if (sensor.is_drawn && !read->on_demand) {
     sensor.forecast.replied(t);
-    if (const auto index = sensor.forecast.next(sensor.schedule)) sensor.forecasted = index;
+    if (const auto index = sensor.forecast.next(sensor.schedule))
+      sensor.forecasted = sensor.schedule.content_of(*index);
   }
   reads_.erase(read);
 }
@@ -98,7 +99,7 @@ void Sampler::announce(const Announce& announce) {
     if (read.announced || !sensors_[read.sensor].is_drawn) continue;
     const sim::Snapshot* state = find_state(read);
     if (!state) continue;
-    announce(*state, read.sensor, read.measurement.index);
+    announce(*state, read.sensor, read.measurement.content());
     read.announced = true;
   }
   for (std::size_t i = 0; i < sensors_.size(); ++i) {

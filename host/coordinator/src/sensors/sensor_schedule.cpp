@@ -6,21 +6,46 @@
 namespace tether::coordinator {
 
 SensorSchedule::SensorSchedule(const uav::SensorTiming& timing, std::uint64_t seed,
-                               std::uint64_t stream)
-    : seed_(seed), stream_(stream) {
+                               std::uint64_t stream, uav::Driver driver)
+    : seed_(seed), stream_(stream), driver_(std::move(driver)) {
   std::visit([this](const auto& t) { timing_ = t; }, timing);
 }
 
-SensorSchedule SensorSchedule::in_free_running(const uav::SensorTiming& timing) {
-  SensorSchedule schedule(uav::OnDemandTiming{uav::ConstantDelay{Duration(0)}}, 0, 0);
+SensorSchedule SensorSchedule::in_free_running(const uav::SensorTiming& timing,
+                                               uav::Driver driver) {
+  SensorSchedule schedule(uav::OnDemandTiming{uav::ConstantDelay{Duration(0)}}, 0, 0,
+                          std::move(driver));
   if (const auto* periodic = std::get_if<uav::PeriodicTiming>(&timing))
     schedule.timing_ = Topic{*periodic};
   return schedule;
 }
 
 Measurement SensorSchedule::periodic(const uav::PeriodicTiming& timing, std::uint64_t index) const {
-  const SimTime sampled_at = uav::sampling_instant(timing, index);
-  return {index, sampled_at, sampled_at + uav::draw(timing.delay, {seed_, stream_, index})};
+  const SimTime instant = uav::sampling_instant(timing, index);
+  const SimTime available_at = instant + uav::draw(timing.delay, {seed_, stream_, index});
+  const std::uint64_t content = driver_.content_of(index);
+  return stamped({index, uav::sampling_instant(timing, content), available_at, index - content},
+                 instant);
+}
+
+// A repeated measurement has a stamp of its own, as drivers stamp what they deliver. Only the
+// stamps of what is sampled at a read can be out of order.
+Measurement SensorSchedule::stamped(Measurement measurement, SimTime instant) const {
+  if (driver_.is_modelled())
+    measurement.stamp = std::max(last_stamp_, driver_.stamp(instant, measurement.index));
+  return measurement;
+}
+
+std::uint64_t SensorSchedule::next_arriving(std::uint64_t index) const {
+  while (driver_.loses(index)) ++index;
+  return index;
+}
+
+std::optional<std::uint64_t> SensorSchedule::newest_arriving(std::uint64_t first,
+                                                             std::uint64_t end) const {
+  for (std::uint64_t k = end; k-- > first;)
+    if (!driver_.loses(k)) return k;
+  return std::nullopt;
 }
 
 std::optional<std::uint64_t> SensorSchedule::newest_sampled(const uav::PeriodicTiming& timing,
@@ -37,6 +62,7 @@ std::optional<Measurement> SensorSchedule::newest_available(const uav::PeriodicT
   const auto newest = newest_sampled(timing, t);
   if (!newest) return std::nullopt;
   for (std::uint64_t k = *newest + 1; k-- > first;) {
+    if (driver_.loses(k)) continue;
     const Measurement candidate = periodic(timing, k);
     if (candidate.available_at <= t) return candidate;
   }
@@ -47,8 +73,10 @@ std::optional<Measurement> SensorSchedule::newest_available(const uav::PeriodicT
 // before it is sampled.
 Measurement SensorSchedule::next_available(const uav::PeriodicTiming& timing,
                                            std::uint64_t first) const {
+  first = next_arriving(first);
   Measurement best = periodic(timing, first);
   for (std::uint64_t k = first + 1; uav::sampling_instant(timing, k) < best.available_at; ++k) {
+    if (driver_.loses(k)) continue;
     const Measurement candidate = periodic(timing, k);
     if (candidate.available_at < best.available_at) best = candidate;
   }
@@ -57,13 +85,14 @@ Measurement SensorSchedule::next_available(const uav::PeriodicTiming& timing,
 
 Measurement SensorSchedule::choose(SimTime t, bool latest) const {
   if (const auto* timing = std::get_if<uav::OnDemandTiming>(&timing_))
-    return {unread_, t, t + uav::draw(timing->delay, {seed_, stream_, unread_})};
+    return stamped({unread_, t, t + uav::draw(timing->delay, {seed_, stream_, unread_})}, t);
   if (const auto there = choose_available(t, latest)) return *there;
   if (const auto* timing = std::get_if<uav::PeriodicTiming>(&timing_))
     return is_queued(latest) ? periodic(*timing, oldest_unread(*timing, t))
                              : next_available(*timing, unread_);
-  const SimTime next = uav::sampling_instant(std::get<Topic>(timing_).timing, unread_);
-  return {unread_, next, next};
+  const std::uint64_t index = next_arriving(unread_);
+  const SimTime next = uav::sampling_instant(std::get<Topic>(timing_).timing, index);
+  return stamped({index, next, next}, next);
 }
 
 std::optional<Measurement> SensorSchedule::choose_available(SimTime t, bool latest) const {
@@ -72,9 +101,10 @@ std::optional<Measurement> SensorSchedule::choose_available(SimTime t, bool late
     const Measurement oldest = periodic(*timing, oldest_unread(*timing, t));
     return oldest.available_at <= t ? std::optional(oldest) : std::nullopt;
   }
-  const auto newest = newest_sampled(std::get<Topic>(timing_).timing, t);
-  if (!newest || !(latest || *newest >= unread_)) return std::nullopt;
-  return Measurement{*newest, t, t};
+  const auto sampled = newest_sampled(std::get<Topic>(timing_).timing, t);
+  if (!sampled) return std::nullopt;
+  const auto newest = newest_arriving(latest ? 0 : unread_, *sampled + 1);
+  return newest ? std::optional(stamped({*newest, t, t}, t)) : std::nullopt;
 }
 
 void SensorSchedule::set_queue(std::uint32_t queue, SimTime t) {
@@ -88,13 +118,17 @@ void SensorSchedule::set_queue(std::uint32_t queue, SimTime t) {
 // A driver delivers in order: a measurement that is available early waits for the one before it.
 std::uint64_t SensorSchedule::oldest_unread(const uav::PeriodicTiming& timing, SimTime t) const {
   const auto newest = newest_available(timing, t, 0);
-  const std::uint64_t end = newest ? newest->index + 1 : 0;
-  const std::uint64_t first_kept = end > queue_ ? end - queue_ : 0;
-  return std::max({unread_, queued_from_.value_or(0), first_kept});
+  std::uint64_t first_kept = newest ? newest->index + 1 : 0;
+  for (std::uint32_t kept = 0; first_kept > 0 && kept < queue_; ++kept) {
+    const auto before = newest_arriving(0, first_kept);
+    first_kept = before.value_or(0);
+  }
+  return next_arriving(std::max({unread_, queued_from_.value_or(0), first_kept}));
 }
 
 void SensorSchedule::mark_read(const Measurement& measurement) {
   unread_ = std::max(unread_, measurement.index + 1);
+  last_stamp_ = std::max(last_stamp_, measurement.stamp.value_or(SimTime{}));
 }
 
 std::optional<SimTime> SensorSchedule::sampling_instant(std::uint64_t index) const {
@@ -107,7 +141,9 @@ std::uint64_t SensorSchedule::first_readable(SimTime t) const {
   if (!timing) return unread_;
   const auto newest = newest_available(*timing, t, 0);
   if (!newest) return 0;
-  return is_queued(false) ? std::min(newest->index, oldest_unread(*timing, t)) : newest->index;
+  const std::uint64_t first =
+      is_queued(false) ? std::min(newest->index, oldest_unread(*timing, t)) : newest->index;
+  return driver_.content_of(first);
 }
 
 }  // namespace tether::coordinator

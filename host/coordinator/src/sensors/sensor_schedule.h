@@ -9,11 +9,16 @@
 
 namespace tether::coordinator {
 
-/// The measurement that a read returns, and its times.
+/// The measurement that a read returns, and its times. `sampled_at` is when its content was really
+/// sampled.
 struct Measurement {
   std::uint64_t index = 0;
   SimTime sampled_at;
-  SimTime available_at;  ///< ≥ sampled_at
+  SimTime available_at;            ///< ≥ sampled_at
+  std::uint64_t repeats = 0;       ///< its content is that of the measurement so many before
+  std::optional<SimTime> stamp{};  ///< that the SUT sees; none: `sampled_at` on the grid
+
+  std::uint64_t content() const { return index - repeats; }
   friend bool operator==(const Measurement&, const Measurement&) = default;
 };
 
@@ -22,10 +27,12 @@ struct Measurement {
 /// time and on the earlier reads.
 class SensorSchedule {
  public:
-  SensorSchedule(const uav::SensorTiming& timing, std::uint64_t seed, std::uint64_t stream);
+  SensorSchedule(const uav::SensorTiming& timing, std::uint64_t seed, std::uint64_t stream,
+                 uav::Driver driver = {});
   /// The same in free running (DESIGN section 2, rule 8): measurements are the state at the read,
-  /// without delay. Periodic: one measurement per period, like a topic.
-  static SensorSchedule in_free_running(const uav::SensorTiming& timing);
+  /// without delay, and none repeats an earlier one. Periodic: one measurement per period, like a
+  /// topic. @pre the driver's jitter has no limit.
+  static SensorSchedule in_free_running(const uav::SensorTiming& timing, uav::Driver driver = {});
 
   /// From a read at `t` on, the newest `queue` measurements wait to be read. The first time that it
   /// is more than one, those before the newest one at `t` are gone.
@@ -41,11 +48,13 @@ class SensorSchedule {
   std::optional<Measurement> choose_available(SimTime t, bool latest) const;
   /// Marks it as read.
   void mark_read(const Measurement& measurement);
+  /// The measurement whose content is delivered as measurement `index`.
+  std::uint64_t content_of(std::uint64_t index) const { return driver_.content_of(index); }
 
   bool is_periodic() const { return !std::holds_alternative<uav::OnDemandTiming>(timing_); }
   /// When measurement `index` is sampled; none if that is at a read.
   std::optional<SimTime> sampling_instant(std::uint64_t index) const;
-  /// The first measurement that a read at `t` or later can return.
+  /// The first measurement whose content a read at `t` or later can return.
   std::uint64_t first_readable(SimTime t) const;
 
  private:
@@ -58,6 +67,11 @@ class SensorSchedule {
   std::optional<Measurement> newest_available(const uav::PeriodicTiming& timing, SimTime t,
                                               std::uint64_t first) const;
   Measurement next_available(const uav::PeriodicTiming& timing, std::uint64_t first) const;
+  /// The first measurement from `index` on that arrives.
+  std::uint64_t next_arriving(std::uint64_t index) const;
+  /// The newest measurement from `first` to before `end` that arrives.
+  std::optional<std::uint64_t> newest_arriving(std::uint64_t first, std::uint64_t end) const;
+  Measurement stamped(Measurement measurement, SimTime instant) const;
 
   std::variant<uav::OnDemandTiming, uav::PeriodicTiming, Topic> timing_;
   std::uint64_t seed_;
@@ -66,6 +80,8 @@ class SensorSchedule {
   /// The first index that a read from the queue at `t` can return.
   std::uint64_t oldest_unread(const uav::PeriodicTiming& timing, SimTime t) const;
 
+  uav::Driver driver_;
+  SimTime last_stamp_{};      ///< of those that were read
   std::uint64_t unread_ = 0;  ///< first index after the last one that was read
   std::uint32_t queue_ = 1;
   std::optional<std::uint64_t> queued_from_{};  ///< none: there was no queue yet

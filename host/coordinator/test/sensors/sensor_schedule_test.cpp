@@ -163,5 +163,95 @@ TEST(SensorSchedule, AQueueAgreesWithItsDefinitionUnderRandomDelays) {
   }
 }
 
+// Against the definition: what is lost is not there for any kind of read, and takes no place in the
+// queue; the rest is as without a driver.
+TEST(SensorSchedule, LostSamplesAreNotThereForAnyRead) {
+  const uav::PeriodicTiming timing{Duration(100), Duration(17),
+                                   uav::NormalDelay{Duration(150), Duration(120)}};
+  KeyedRandom random({.seed = 8});
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    const uav::Driver driver({.stamp_offset = Duration(1000),
+                              .stamp_jitter = Duration(40),
+                              .lost_probability = 0.4,
+                              .repeated_probability = 0.3},
+                             timing.period, seed, "uav1", "camera");
+    SensorSchedule schedule(timing, seed, 9, driver);
+    std::vector<std::uint64_t> arrived;
+    std::vector<SimTime> available;
+    for (std::uint64_t k = 0; k < 900; ++k) {
+      if (driver.loses(k)) continue;
+      arrived.push_back(k);
+      available.push_back(uav::sampling_instant(timing, k) + uav::draw(timing.delay, {seed, 9, k}));
+    }
+    const std::uint32_t queue = seed % 2 == 0 ? 1 : 2 + random.bits() % 6;
+    std::size_t unread = 0;  // these are places in `arrived`
+    std::optional<std::size_t> begun_at;
+    SimTime last_stamp{};
+    std::int64_t now = 0;
+    for (int i = 0; i < 150; ++i) {
+      now += random.bits() % 300;
+      const auto t = from_ns<SimTime>(now);
+      const std::uint64_t readable = schedule.first_readable(t);
+      schedule.set_queue(queue, t);
+      std::size_t end = 0;
+      std::optional<std::size_t> newest, next;
+      for (std::size_t n = 0; n < available.size(); ++n) {
+        if (available[n] <= t) end = n + 1;
+        if (available[n] <= t && n >= unread) newest = n;
+        if (n >= unread && (!next || available[n] < available[*next])) next = n;
+      }
+      if (!begun_at) begun_at = end > 0 ? end - 1 : 0;
+      const std::size_t expected =
+          queue == 1 ? newest.value_or(*next)
+                     : std::max({unread, *begun_at, end > queue ? end - queue : std::size_t{0}});
+      const Measurement got = schedule.choose(t, false);
+      ASSERT_EQ(got.index, arrived[expected]) << "seed " << seed << ", read " << i;
+      ASSERT_EQ(got.available_at, available[expected]);
+      ASSERT_EQ(schedule.choose_available(t, false).has_value(), got.available_at <= t);
+      ASSERT_EQ(got.content(), driver.content_of(got.index));
+      ASSERT_EQ(got.sampled_at, uav::sampling_instant(timing, got.content()));
+      ASSERT_EQ(got.stamp, driver.stamp(uav::sampling_instant(timing, got.index), got.index));
+      ASSERT_GE(got.content(), readable) << "its state is still there";
+      ASSERT_GT(*got.stamp, last_stamp);
+      last_stamp = *got.stamp;
+      schedule.mark_read(got);
+      unread = expected + 1;
+      now = std::max(now, to_ns(got.available_at));
+    }
+  }
+}
+
+// On demand and in free running, two reads can be closer than the jitter.
+TEST(SensorSchedule, StampsOfReadsDoNotGoBack) {
+  const uav::DriverModel model{.stamp_offset = milliseconds(50), .stamp_jitter = milliseconds(5)};
+  const uav::Driver driver(model, std::nullopt, 3, "uav1", "range");
+  SensorSchedule on_demand(uav::OnDemandTiming{uav::ConstantDelay{Duration(0)}}, 3, 0, driver);
+  SensorSchedule free = SensorSchedule::in_free_running(every_33_ms(Duration(0)), driver);
+  for (auto* schedule : {&on_demand, &free}) {
+    SimTime last{};
+    for (std::int64_t i = 0; i < 300; ++i) {
+      const Measurement got = schedule->choose(ms(2 * i), true);
+      ASSERT_EQ(got.stamp, std::max(last, driver.stamp(got.sampled_at, got.index)));
+      schedule->mark_read(got);
+      last = *got.stamp;
+    }
+  }
+}
+
+TEST(SensorSchedule, InFreeRunningLostSamplesAreWaitedOver) {
+  const uav::Driver driver({.lost_probability = 0.5}, std::nullopt, 3, "uav1", "camera");
+  SensorSchedule schedule = SensorSchedule::in_free_running(every_33_ms(Duration(0)), driver);
+  SimTime t = ms(0);
+  for (std::uint64_t k = 0; k < 200; ++k) {
+    if (driver.loses(k)) continue;
+    const Measurement got = schedule.choose(t, false);
+    ASSERT_EQ(got.index, k);
+    ASSERT_EQ(got.sampled_at, ms(static_cast<std::int64_t>(33 * k)));
+    schedule.mark_read(got);
+    ASSERT_FALSE(schedule.choose_available(got.sampled_at, false));
+    t = got.sampled_at;
+  }
+}
+
 }  // namespace
 }  // namespace tether::coordinator

@@ -99,6 +99,8 @@ void members(auto& io, Maybe<Interaction> auto& m) {
   io.optional("sampled_at_ns", m.sampled_at);
   io.optional("sample_state_at_ns", m.sample_state_at);
   io.optional("available_at_ns", m.available_at);
+  io.optional("sample_stamp_ns", m.sample_stamp);
+  io.optional("repeated_index", m.repeated_index);
   if (io.has("seen_anchors", m.seen_anchors.has_value()))
     io.list("seen_anchors", io.value_of(m.seen_anchors));
   io.optional("effect_at_ns", m.effect_at);
@@ -323,6 +325,15 @@ void members(auto& io, Maybe<CameraInfo> auto& m) {
   if (io.has("models", !m.models.empty())) io.list("models", m.models);
 }
 
+void members(auto& io, Maybe<DriverInfo> auto& m) {
+  constexpr int kBillion = 1'000'000'000;
+  io("stamp_offset_ns", m.stamp_offset);
+  io("stamp_jitter_ns", m.stamp_jitter);
+  io.within("stamp_drift_ppb", m.stamp_drift_ppb, -kBillion, kBillion);
+  io("lost_probability", m.lost_probability);
+  io("repeated_probability", m.repeated_probability);
+}
+
 /// Records of Tether 0.1.0 have neither bounds of the delay nor cameras.
 void members(auto& io, Maybe<SensorInfo> auto& m) {
   io("uav", m.uav);
@@ -333,8 +344,10 @@ void members(auto& io, Maybe<SensorInfo> auto& m) {
   io("phase_ns", m.phase);
   if (io.has("delay_min_ns", true)) io("delay_min_ns", m.delay_min);
   if (io.has("delay_max_ns", true)) io("delay_max_ns", m.delay_max);
-  if (!io.has("camera", m.camera.has_value())) return;
-  io.object("camera", [&](auto& camera) { members(camera, io.value_of(m.camera)); });
+  if (io.has("camera", m.camera.has_value()))
+    io.object("camera", [&](auto& camera) { members(camera, io.value_of(m.camera)); });
+  if (io.has("driver", m.driver.has_value()))
+    io.object("driver", [&](auto& driver) { members(driver, io.value_of(m.driver)); });
 }
 
 void members(auto& io, Maybe<Waypoint> auto& m) {

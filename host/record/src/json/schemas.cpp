@@ -23,6 +23,9 @@ const Schema kInteractionSchema{"tether.Interaction", R"json({
     "sampled_at_ns": {"type": "integer", "description": "ST that the timing model asked for"},
     "sample_state_at_ns": {"type": "integer", "description": "ST of the state that was measured"},
     "available_at_ns": {"type": "integer", "description": "sampled_at + delay"},
+    "sample_stamp_ns": {"type": "integer", "description": "time of the sample that the SUT saw"},
+    "repeated_index": {"type": "integer", "minimum": 0,
+                       "description": "the content is that of this earlier measurement"},
     "seen_anchors": {
       "type": "array",
       "description": "of an image: each anchor of which pixels are visible",

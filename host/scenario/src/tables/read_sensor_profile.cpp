@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -86,6 +87,42 @@ SensorSetter attitude(const toml::Table& sensor, std::string_view key) {
 
 const std::vector<SensorKey> kMounting = {{"position_m", position}, {"rpy_deg", attitude}};
 
+// Driver.
+
+/// Sets a member of the driver's model.
+SensorKey driver_key(std::string_view name, auto read, auto set) {
+  return {name, [read, set](const toml::Table& table, std::string_view key) -> SensorSetter {
+            return [set, value = read(table, key)](sim::Sensor& s) { set(s.driver, value); };
+          }};
+}
+
+const std::vector<SensorKey>& driver_keys() {
+  using uav::DriverModel;
+  // Of a certain loss, no sample would ever arrive.
+  constexpr toml::Range kNotCertain{.min = 0.0, .max = 0.99};
+  constexpr toml::Range kDrift_ppm{.min = -1e5, .max = 1e5};
+  const auto duration = [](double least_ms, double most_ms) {
+    return [=](const toml::Table& table, std::string_view key) {
+      return table.duration(key, {.min = least_ms, .max = most_ms});
+    };
+  };
+  static const std::vector<SensorKey> keys = {
+      driver_key("stamp_offset_ms", duration(-6e4, 6e4),
+                 [](DriverModel& m, Duration offset) { m.stamp_offset = offset; }),
+      driver_key("stamp_jitter_ms", duration(0.0, 6e4),
+                 [](DriverModel& m, Duration jitter) { m.stamp_jitter = jitter; }),
+      driver_key("stamp_drift_ppm", number(kDrift_ppm, 1e3),
+                 [](DriverModel& m, double ppb) {
+                   m.stamp_drift_ppb = static_cast<int>(std::lround(ppb));
+                 }),
+      driver_key("lost_probability", number(kNotCertain),
+                 [](DriverModel& m, double share) { m.lost_probability = share; }),
+      driver_key("repeated_probability", number(kNotCertain),
+                 [](DriverModel& m, double share) { m.repeated_probability = share; }),
+  };
+  return keys;
+}
+
 /// The keys for sensors of these kinds.
 std::vector<std::string_view> names_of_keys(const std::vector<SensorKind>& kinds) {
   std::vector<std::string_view> names(kOfAny.begin(), kOfAny.end());
@@ -94,6 +131,7 @@ std::vector<std::string_view> names_of_keys(const std::vector<SensorKind>& kinds
       if (std::ranges::count(names, key.name) == 0) names.push_back(key.name);
   };
   add(kMounting);
+  add(driver_keys());
   for (const SensorKind kind : kinds) add(keys_of(kind));
   return names;
 }
@@ -135,6 +173,7 @@ SensorProfile read_sensor_profile(const toml::Table& sensors, std::string_view n
       if (sensor.has(key.name)) profile.settings.push_back({kind, key.read(sensor, key.name)});
   };
   read(kMounting, std::nullopt);
+  read(driver_keys(), std::nullopt);
   for (const SensorKind kind : kinds(profile.kind)) read(keys_of(kind), kind);
   return profile;
 }

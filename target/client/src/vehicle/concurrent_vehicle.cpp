@@ -163,7 +163,8 @@ Result<link::Reply> ConcurrentVehicle::ask(Connection& connection, Body body) {
   if (!packet) return packet.failure();
   auto* reply = packet->message ? std::get_if<link::Reply>(&*packet->message) : nullptr;
   if (reply == nullptr) return protocol_failure("it is not a Reply");
-  if (const Status good = check(*reply, request, free_running_); !good) return good.failure();
+  if (const Status good = check(*reply, request, catalogue(), free_running_); !good)
+    return good.failure();
   connection.sequence = request.sequence;
   own.previous_call = call;
   own.stages.resume(now());

@@ -48,7 +48,8 @@ Failure mission_finished() {
   return {Failure::Kind::kInvalid, "the mission is finished; no more calls are possible"};
 }
 
-Status check(const link::Reply& reply, const link::Request& request, bool free_running) {
+Status check(const link::Reply& reply, const link::Request& request,
+             const uav::Catalogue& catalogue, bool free_running) {
   if (reply.sequence != request.sequence) {
     return protocol_failure("it answers request " + std::to_string(reply.sequence) + ", not " +
                             std::to_string(request.sequence));
@@ -56,7 +57,10 @@ Status check(const link::Reply& reply, const link::Request& request, bool free_r
   if (free_running) return ok_status();
   if (reply.resume_at < request.issued_at)
     return protocol_failure("its time is before the request");
-  if (reply.sample && uav::sampled_at(*reply.sample) > same_instant(reply.resume_at)) {
+  const auto* read = std::get_if<link::ReadSensor>(&request.body);
+  const bool has_own_stamp = read && catalogue.sensors[read->sensor].own_stamps;
+  if (reply.sample && !has_own_stamp &&
+      uav::sampled_at(*reply.sample) > same_instant(reply.resume_at)) {
     return protocol_failure("its sample is from the future");
   }
   if (reply.message && reply.message->arrived_at > same_instant(reply.resume_at)) {

@@ -23,7 +23,8 @@ Failure protocol_failure(const std::string& what);
 Failure mission_finished();
 /// What the protocol demands of the reply to a request and, unless ET is only told
 /// (`free_running`), the rules of time.
-Status check(const link::Reply& reply, const link::Request& request, bool free_running);
+Status check(const link::Reply& reply, const link::Request& request,
+             const uav::Catalogue& catalogue, bool free_running);
 /// `et + duration` within what a message may carry.
 ExecTime add_within_bounds(ExecTime et, Duration duration);
 /// The Sleep until then, or until the first or last instant that a message may carry.

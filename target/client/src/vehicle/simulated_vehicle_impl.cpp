@@ -122,7 +122,8 @@ Result<link::Reply> SimulatedVehicle::ask(const link::Request& request) {
   if (!message) return message.failure();
   auto* reply = std::get_if<link::Reply>(&*message);
   if (reply == nullptr) return protocol_failure("it is not a Reply");
-  if (const Status good = check(*reply, request, free_running_); !good) return good.failure();
+  if (const Status good = check(*reply, request, catalogue(), free_running_); !good)
+    return good.failure();
   return std::move(*reply);
 }
 

@@ -31,8 +31,9 @@ std::vector<link::Message> one(link::Message message) {
 class SimulatedVehicleTest : public testing::Test {
  protected:
   void start(ScriptedCoordinator::Answer answer = ScriptedCoordinator::grant_at_once,
-             bool free_running = false) {
+             bool free_running = false, bool own_stamps = false) {
     link::Welcome welcome = welcome_with_sensors();
+    welcome.catalogue.sensors[0].own_stamps = own_stamps;
     welcome.free_running = free_running;
     coordinator_ = std::make_unique<ScriptedCoordinator>(welcome, std::move(answer));
     auto wall = std::make_unique<FakeWallTimer>();
@@ -306,6 +307,19 @@ TEST_F(SimulatedVehicleTest, RefusesRepliesThatBreakTheRules) {
                    Failure::Kind::kProtocol);
     expect_failure(vehicle_->command_velocity({}), Failure::Kind::kProtocol);
   }
+}
+
+// The clock of its driver can be ahead.
+TEST_F(SimulatedVehicleTest, ASensorWithOwnStampsCanBeAheadOfTheRead) {
+  const uav::CameraSample ahead{SimTime(20ms), 0, 4, 2, kImage.rgb};
+  start(
+      [ahead](const Request& r) {
+        return one(Reply{r.sequence, r.issued_at, ahead});
+      },
+      false, true);
+  const auto image = vehicle_->read<uav::CameraSample>("camera", Read::kNext);
+  ASSERT_TRUE(image.ok());
+  EXPECT_EQ(image->sampled_at, ahead.sampled_at);
 }
 
 TEST_F(SimulatedVehicleTest, DoesNotHoldEtInFreeRunning) {

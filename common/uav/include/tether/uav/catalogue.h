@@ -69,6 +69,9 @@ struct SensorDescription {
   std::variant<CameraProperties, ImuProperties, RangeProperties, NavSatProperties,
                MagnetometerProperties, BarometerProperties, OdometryProperties, ScanProperties>
       properties;
+  /// Its samples have the stamps of a clock that is not exactly the SUT's: they can be later than
+  /// the read.
+  bool own_stamps = false;
 
   SensorKind kind() const { return static_cast<SensorKind>(properties.index()); }
   /// Of a camera; else none.

@@ -176,6 +176,7 @@ void fields(auto& io, Is<SensorDescription> auto& m) {
   io("x_bs", m.X_BS);
   io("rate_hz", m.rate_hz, wire::kNotNegative);
   io("properties", m.properties);
+  io("own_stamps", m.own_stamps);
 }
 
 void fields(auto& io, Is<Anchor> auto& m) {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <variant>
 #include <vector>
@@ -41,6 +42,51 @@ struct PeriodicTiming {
   Delay delay;
 };
 using SensorTiming = std::variant<OnDemandTiming, PeriodicTiming>;
+
+/// How the driver of a sensor stamps and delivers its samples. By default each sample is delivered
+/// once, with the instant at which it was sampled.
+struct DriverModel {
+  Duration stamp_offset{0};
+  Duration stamp_jitter{0};           ///< standard deviation
+  int stamp_drift_ppb = 0;            ///< what the clock of the stamps gains
+  double lost_probability = 0.0;      ///< of each sample; [0, 1)
+  double repeated_probability = 0.0;  ///< of each sample; [0, 1)
+  friend bool operator==(const DriverModel&, const DriverModel&) = default;
+};
+
+/// What the driver does with each sample (DESIGN section 2, "Stamps, lost and repeated samples"):
+/// pure functions of the seed, the UAV, the sensor and the sample's index.
+class Driver {
+ public:
+  /// The jitter of a periodic sensor is drawn again beyond this share of its period. Clocks that
+  /// drift by up to 10 % then still give later samples later stamps.
+  static constexpr double kMostJitter_periods = 0.4;
+
+  Driver() = default;
+  /// @pre the period is that of a periodic sensor; with none, the jitter has no limit.
+  Driver(const DriverModel& model, std::optional<Duration> period, std::uint64_t seed,
+         std::string_view uav, std::string_view sensor);
+
+  /// The driver stamps the samples: they are not as sampled.
+  bool is_modelled() const { return model_ != DriverModel{}; }
+  /// Sample `index` never arrives.
+  bool loses(std::uint64_t index) const;
+  /// The sample whose content is delivered as sample `index`: itself, or where that is repeated the
+  /// newest before it that arrived with content of its own. Does not fall with the index.
+  std::uint64_t content_of(std::uint64_t index) const;
+  /// The stamp of sample `index` of this instant; not before 0.
+  SimTime stamp(SimTime instant, std::uint64_t index) const;
+
+ private:
+  bool repeats(std::uint64_t index) const;
+  Duration jitter(std::uint64_t index) const;
+
+  DriverModel model_;
+  std::optional<Duration> most_jitter_{};
+  RandomKey jitter_key_{};
+  RandomKey lost_key_{};
+  RandomKey repeated_key_{};
+};
 
 /// The instant at which periodic measurement k is sampled.
 constexpr SimTime sampling_instant(const PeriodicTiming& timing, std::uint64_t index) {

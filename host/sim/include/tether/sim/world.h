@@ -17,6 +17,7 @@
 #include <tether/uav/math.h>
 #include <tether/uav/multirotor.h>
 #include <tether/uav/path.h>
+#include <tether/uav/sensor_timing.h>
 #include <tether/uav/wind.h>
 
 /// The scene for every back end: the content of the SDF files with everything resolved (poses in W,
@@ -221,6 +222,7 @@ struct Sensor {
                OdometryModel, ScanModel>
       model;
   FileLocation declared_at{};  ///< in its SDF file; empty: in none
+  uav::DriverModel driver{};   ///< how its samples are stamped and delivered
   uav::SensorKind kind() const { return static_cast<uav::SensorKind>(model.index()); }
 };
 
