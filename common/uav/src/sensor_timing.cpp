@@ -62,6 +62,16 @@ Duration draw(const Delay& delay, const RandomKey& key) {
   return std::visit([&key](const auto& d) { return draw_from(d, key); }, delay);
 }
 
+std::pair<Duration, Duration> bounds(const Delay& delay) {
+  if (const auto* constant = std::get_if<ConstantDelay>(&delay))
+    return {constant->value, constant->value};
+  if (const auto* empirical = std::get_if<EmpiricalDelay>(&delay)) {
+    const auto [least, greatest] = std::ranges::minmax_element(empirical->samples);
+    return {*least, *greatest};
+  }
+  return {Duration(0), Duration::max()};
+}
+
 Duration mean(const Delay& delay) {
   return std::visit([](const auto& d) { return mean_of(d); }, delay);
 }

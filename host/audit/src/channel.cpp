@@ -40,6 +40,7 @@ class ChannelCheck {
         grid_(grid),
         report_(report),
         is_ideal_(radio_.model == "ideal"),
+        is_drawn_(radio_.model == "distribution"),
         tracks_(tracks_of(record)) {
     for (const record::SutInfo& sut : record.header.suts)
       indices_.emplace(sut.uav, indices_.size());
@@ -56,13 +57,16 @@ class ChannelCheck {
       check_times(fate);
       if (m.outcome == record::kWaiting) continue;
       const bool was_transmitted =
-          !is_ideal_ && m.outcome != "queue_full" && m.outcome != "too_long";
-      if (was_transmitted != (m.began_at && m.distance_m && m.walls && m.snr_db))
+          !is_ideal_ && !is_drawn_ && m.outcome != "queue_full" && m.outcome != "too_long";
+      const bool has_all = m.began_at && m.distance_m && m.walls && m.snr_db;
+      const bool has_any = m.began_at || m.distance_m || m.walls || m.snr_db;
+      if (was_transmitted ? !has_all : has_any)
         report_.add(0, fate, "message {} {} the values of its transmission", m.outcome,
                     was_transmitted ? "without" : "with");
       else if (was_transmitted)
         check_link(fate);
     }
+    if (is_drawn_) check_drops();
     check_queues();
     check_inboxes();
   }
@@ -75,6 +79,13 @@ class ChannelCheck {
     constexpr double kMost = 1e30;  // whatever the record contains
     const double data_ns = std::ceil(bits(bytes) / radio_.data_rate_bit_s * 1e9);
     return wide(radio_.preamble) + static_cast<Wide>(std::min(data_ns, kMost));
+  }
+  // Of a radio without a channel.
+  Wide drawn_air_time(std::uint64_t bytes) const {
+    if (!(radio_.data_rate_bit_s > 0.0)) return 0;
+    constexpr double kMost = 1e30;
+    return static_cast<Wide>(std::min(
+        std::ceil(8.0 * static_cast<double>(bytes) / radio_.data_rate_bit_s * 1e9), kMost));
   }
   Wide end(const Fate& fate) const {
     return wide(*fate.message.began_at) + air_time(fate.message.bytes);
@@ -100,6 +111,12 @@ class ChannelCheck {
       if (at != sent + wide(radio_.least_delay))
         report_.add(0, fate, "message sent at {} {} at {}, not after the radio's delay of {}",
                     ns(sent), m.outcome, ns(at), ns(radio_.least_delay));
+    } else if (is_drawn_) {
+      const Wide delay = at - sent - drawn_air_time(m.bytes);
+      if (delay < wide(radio_.least_delay) || delay > wide(radio_.most_delay))
+        report_.add(0, fate, "message sent at {} {} at {}, with a delay of {} instead of {} to {}",
+                    ns(sent), m.outcome, ns(at), ns(delay), ns(radio_.least_delay),
+                    ns(radio_.most_delay));
     } else if (m.began_at) {
       if (at != end(fate) || wide(*m.began_at) < sent + wide(radio_.delay))
         report_.add(0, fate, "message sent at {}, transmitted from {} for {}, was {} at {}",
@@ -118,6 +135,37 @@ class ChannelCheck {
     if (began / slot % slots != static_cast<Wide>(indices_.at(fate.message.uav)) ||
         began % slot + air_time(fate.message.bytes) > slot)
       report_.add(0, fate, "message transmitted at {}, not in a slot of its sender", ns(began));
+  }
+
+  // --- what is drawn
+  // ------------------------------------------------------------------------------
+
+  // Rule 0: from one UAV to another, each message begins, goes on with or ends a burst of losses,
+  // in the order of sending.
+  void check_drops() {
+    std::map<std::tuple<std::string, std::string, std::uint64_t>, const Fate*> messages;
+    for (const Fate& fate : record_.radio)
+      messages.emplace(std::tuple(fate.message.uav, fate.message.to, fate.message.sequence), &fate);
+    std::map<std::pair<std::string, std::string>, bool> bursts;
+    for (const auto& [key, fate] : messages) {
+      const RadioMessage& m = fate->message;
+      bool& is_burst = bursts[{m.uav, m.to}];
+      const double change =
+          is_burst ? radio_.burst_end_probability : radio_.burst_begin_probability;
+      if (uniform(m, "radio burst") < change) is_burst = !is_burst;
+      const bool is_dropped = is_burst || uniform(m, "radio loss") < radio_.loss_probability;
+      const bool has_arrived = m.outcome == record::kDelivered || m.outcome == "inbox_full";
+      if (m.outcome != record::kWaiting && (is_dropped ? m.outcome != "dropped" : !has_arrived))
+        report_.add(0, *fate, "message was {}, but {} follows from the radio's settings", m.outcome,
+                    is_dropped ? "dropped" : record::kDelivered);
+    }
+  }
+
+  double uniform(const RadioMessage& m, const char* quantity) const {
+    return KeyedRandom({.seed = record_.header.seed,
+                        .stream = random_stream(m.uav, m.to, quantity),
+                        .index = m.sequence})
+        .uniform();
   }
 
   // --- what is received
@@ -153,10 +201,7 @@ class ChannelCheck {
   // One draw decides, with the noise and with the interference.
   void check_outcome(const Fate& fate, double best_db, bool transmitted) {
     const RadioMessage& m = fate.message;
-    KeyedRandom random({.seed = record_.header.seed,
-                        .stream = random_stream(m.uav, m.to, "radio loss"),
-                        .index = m.sequence});
-    const double draw = random.uniform();
+    const double draw = uniform(m, "radio loss");
     const double by_noise = loss(best_db, m.bytes), by_all = loss(*m.snr_db, m.bytes);
     const auto is_close = [&](double p) { return std::abs(p - draw) < 1e-9; };
     if (is_close(by_noise) || is_close(by_all)) return;
@@ -228,7 +273,7 @@ class ChannelCheck {
 
   // Rule 0: a message is refused by its sender's queue only if that is full.
   void check_queues() {
-    if (is_ideal_) return;
+    if (is_ideal_ || is_drawn_) return;
     std::map<std::string, std::vector<SimTime>> left;  // by sender: when each left its queue
     for (const auto& [key, fate] : first_) {
       const RadioMessage& m = fate->message;
@@ -286,6 +331,7 @@ class ChannelCheck {
   const Boundaries& grid_;
   Report& report_;
   bool is_ideal_;
+  bool is_drawn_;  // by distributions: there is no channel either
   std::map<std::string, Track> tracks_;
   std::map<std::string, std::size_t> indices_;
   std::map<std::string, std::map<Wide, Wide>> air_;  // by UAV: from when to when it transmitted
@@ -298,7 +344,7 @@ void check_channel(const record::Record& record, const Boundaries& grid, Report&
   const RadioInfo& radio = record.header.radio;
   const bool is_older = record.header.time_limit <= Duration(0);  // Tether 0.1.0: without settings
   const bool is_known =
-      radio.model == "ideal" ||
+      radio.model == "ideal" || radio.model == "distribution" ||
       (radio.data_rate_bit_s > 0.0 && (radio.access == "csma" || radio.access == "tdma"));
   if (radio.inbox_messages > 0 && is_known)
     ChannelCheck(record, grid, report).run();

@@ -16,8 +16,9 @@ using Entry = record::Logged<record::Interaction>;
 using Fate = record::Logged<record::RadioMessage>;
 using record::RadioMessage;
 
-const std::set<std::string> kOutcomes = {"delivered",  "noise",    "collision",  "half_duplex",
-                                         "queue_full", "too_long", "inbox_full", "waiting"};
+const std::set<std::string> kOutcomes = {"delivered",   "noise",      "collision",
+                                         "half_duplex", "queue_full", "too_long",
+                                         "inbox_full",  "waiting",    "dropped"};
 
 class RadioCheck {
  public:

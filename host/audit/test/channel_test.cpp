@@ -2,9 +2,12 @@
 #include "checks.h"
 
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
+
+#include <tether/base/random.h>
 
 // What becomes of messages, by the settings of the radio.
 namespace tether::audit {
@@ -120,6 +123,49 @@ TEST(AuditOfTheChannel, KnowsWhoTransmits) {
   EXPECT_EQ(channel_findings(record), 2u);
   record.radio[0].message.outcome = back.outcome = "half_duplex";
   EXPECT_EQ(channel_findings(record), 0u);
+}
+
+// Ten messages, of which those that the draws drop are dropped.
+TEST(AuditOfTheChannel, OfADistributionIsItsBoundsAndItsDraws) {
+  Record good = one_message();
+  good.header.radio = {.model = "distribution",
+                       .least_delay = microseconds(10),
+                       .data_rate_bit_s = 8e6,
+                       .inbox_messages = 100,
+                       .most_delay = microseconds(30),
+                       .loss_probability = 0.4};
+  good.radio.clear();
+  for (std::uint64_t i = 1; i <= 10; ++i) {
+    const SimTime sent_at(microseconds(100 * i));
+    KeyedRandom random(
+        {.seed = good.header.seed, .stream = random_stream("a", "b", "radio loss"), .index = i});
+    good.radio.push_back({sent_at,
+                          0,
+                          {.uav = "a",
+                           .sequence = i,
+                           .to = "b",
+                           .bytes = 64,
+                           .sent_at = sent_at,
+                           .at = sent_at + microseconds(64 + 20),
+                           .outcome = random.uniform() < 0.4 ? "dropped" : "delivered"}});
+  }
+  EXPECT_EQ(channel_findings(good), 0u);
+  for (const Planted& planted : std::vector<Planted>{
+           {"too early", {}, [](Record& r) { r.radio[3].message.at -= microseconds(11); }},
+           {"too late", {}, [](Record& r) { r.radio[3].message.at += microseconds(11); }},
+           {"another fate",
+            {},
+            [](Record& r) {
+              std::string& outcome = r.radio[3].message.outcome;
+              outcome = outcome == "dropped" ? "delivered" : "dropped";
+            }},
+           {"a loss of a channel", {}, [](Record& r) { r.radio[3].message.outcome = "noise"; }},
+           {"a transmission", {}, [](Record& r) { r.radio[3].message.snr_db = 3.0; }},
+           {"bursts", {}, [](Record& r) { r.header.radio.burst_begin_probability = 1.0; }}}) {
+    Record record = good;
+    planted.plant(record);
+    EXPECT_GT(channel_findings(record), 0u) << planted.what;
+  }
 }
 
 TEST(AuditOfTheChannel, OfAnIdealRadioIsItsDelay) {

@@ -14,18 +14,6 @@ namespace tether::coordinator {
 
 namespace {
 
-/// The least and the greatest delay that the model can draw.
-std::pair<Duration, Duration> bounds(const uav::Delay& delay) {
-  if (const auto* constant = std::get_if<uav::ConstantDelay>(&delay))
-    return {constant->value, constant->value};
-  if (const auto* empirical = std::get_if<uav::EmpiricalDelay>(&delay)) {
-    const auto [least, greatest] =
-        std::minmax_element(empirical->samples.begin(), empirical->samples.end());
-    return {*least, *greatest};
-  }
-  return {Duration(0), Duration::max()};
-}
-
 record::CameraInfo describe(const uav::Pose& X_BS, const uav::CameraProperties& camera) {
   const uav::CameraModel& model = camera.model;
   return {.p_BS_m = {X_BS.p.x, X_BS.p.y, X_BS.p.z},
@@ -57,7 +45,7 @@ record::SensorInfo describe(const std::string& uav, const uav::SensorDescription
                             const uav::SensorTiming& timing, const uav::DriverModel& driver) {
   record::SensorInfo info{.uav = uav, .name = sensor.name, .kind = std::string(sensor.kind_name())};
   std::tie(info.delay_min, info.delay_max) =
-      bounds(std::visit([](const auto& t) { return t.delay; }, timing));
+      uav::bounds(std::visit([](const auto& t) { return t.delay; }, timing));
   if (const auto* periodic = std::get_if<uav::PeriodicTiming>(&timing)) {
     info.periodic = true;
     info.period = periodic->period;
@@ -135,7 +123,7 @@ record::Header Coordinator::Impl::make_header() const {
         {.uav = session.uav_name,
          .sut = session.hello.sut,
          .clock = session.hello.clock,
-         .command_latency = bounds(session.command_latency).first,
+         .command_latency = uav::bounds(session.command_latency).first,
          .concurrent = session.hello.concurrent,
          .cores = session.hello.clock.adds_up_cores() ? session.cores : 0,
          .max_acceleration_m_s2 = max_acceleration_m_s2(uav.airframe, world()),
@@ -150,7 +138,7 @@ record::Header Coordinator::Impl::make_header() const {
          .energy = describe_energy(uav, world().gravity_m_s2)});
     record::SutInfo& sut = header.suts.back();
     if (!std::holds_alternative<uav::ConstantDelay>(session.command_latency))
-      sut.max_command_latency = bounds(session.command_latency).second;
+      sut.max_command_latency = uav::bounds(session.command_latency).second;
     if (const auto& loss = options_.uavs[session.uav].setpoint_loss) {
       sut.setpoint_timeout = loss->timeout;
       sut.on_setpoint_loss = name(loss->action);

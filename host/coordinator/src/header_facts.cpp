@@ -53,8 +53,17 @@ record::RadioInfo describe(const radio::Settings& radio) {
                          .least_delay = radio::least_delay(radio),
                          .inbox_messages = radio.inbox_messages};
   if (radio.model == radio::Model::kIdeal) return info;
-  info.model = "log_distance";
   info.data_rate_bit_s = radio.data_rate_bit_s;
+  if (radio.model == radio::Model::kDistribution) {
+    const Duration most = uav::bounds(radio.drawn_delay).second;
+    info.model = "distribution";
+    info.most_delay = most == Duration::max() ? most : radio.delay + most;
+    info.loss_probability = radio.loss_probability;
+    info.burst_begin_probability = radio.burst_begin_probability;
+    info.burst_end_probability = radio.burst_end_probability;
+    return info;
+  }
+  info.model = "log_distance";
   info.access = radio.access == radio::Access::kCsma ? "csma" : "tdma";
   info.queue_messages = radio.queue_messages;
   info.header_bytes = radio.header_bytes;

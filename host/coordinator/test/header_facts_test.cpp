@@ -27,10 +27,19 @@ TEST(HeaderFacts, OneModelThatIsNotStaticCanMove) {
   EXPECT_FALSE(only_uavs_move(world));
 }
 
-TEST(HeaderFacts, AnIdealRadioHasNoChannel) {
+TEST(HeaderFacts, ARadioHasTheSettingsOfItsModelOnly) {
   radio::Settings settings;
   EXPECT_EQ(describe(settings).model, "ideal");
   EXPECT_EQ(describe(settings).access, "");
+  settings.model = radio::Model::kDistribution;
+  settings.delay = Duration(5);
+  settings.drawn_delay = uav::EmpiricalDelay{{Duration(30), Duration(20)}};
+  EXPECT_EQ(describe(settings).access, "");
+  EXPECT_EQ(describe(settings).least_delay, Duration(25));
+  EXPECT_EQ(describe(settings).most_delay, Duration(35));
+  settings.drawn_delay = uav::NormalDelay{Duration(30), Duration(20)};
+  EXPECT_EQ(describe(settings).least_delay, Duration(5));
+  EXPECT_EQ(describe(settings).most_delay, Duration::max());
   settings.model = radio::Model::kLogDistance;
   settings.access = radio::Access::kTdma;
   EXPECT_EQ(describe(settings).access, "tdma");

@@ -88,6 +88,37 @@ TEST_F(RadioTest, MessagesOfOneInstantAreOrderedBySenderAndSequence) {
   EXPECT_THAT(order, ElementsAre(name_of(1) + " 1", name_of(1) + " 2", name_of(2) + " 1"));
 }
 
+TEST_F(RadioTest, ByDistributionMessagesOvertakeAndAreReceivedWhenTheyArrive) {
+  options_.radio.model = radio::Model::kDistribution;
+  options_.radio.data_rate_bit_s = 0.0;
+  options_.radio.delay = microseconds(100);
+  options_.radio.drawn_delay = uav::EmpiricalDelay{{microseconds(250), milliseconds(4)}};
+  options_.radio.loss_probability = 0.2;
+  constexpr int kMessages = 40;
+  Script sender(kMessages, send(milliseconds(1)));
+  sender.push_back(finish({}));
+  Script receiver(kMessages, receive({}, milliseconds(20)));
+  receiver.push_back(finish({}));
+  ASSERT_EQ(run_all({std::move(sender), std::move(receiver)}).end, RunEnd::kFinished);
+  std::vector<std::uint64_t> received;
+  for (const record::Interaction& entry : recorder_.interactions) {
+    if (!entry.received) continue;
+    EXPECT_EQ(entry.reply_at, std::max(entry.request_at, same_instant(entry.received->arrived_at)));
+    received.push_back(entry.received->sequence);
+  }
+  int dropped = 0;
+  for (const record::RadioMessage& entry : recorder_.radio) {
+    const Duration delay = entry.at - entry.sent_at;
+    EXPECT_TRUE(delay == microseconds(350) || delay == microseconds(4'100)) << delay.count();
+    EXPECT_FALSE(entry.began_at || entry.distance_m || entry.snr_db);
+    dropped += entry.outcome == "dropped" ? 1 : 0;
+  }
+  EXPECT_FALSE(std::ranges::is_sorted(received));
+  EXPECT_NEAR(dropped, 8, 7);
+  EXPECT_EQ(received.size() + static_cast<std::size_t>(dropped), std::size_t{kMessages});
+  EXPECT_EQ(recorder_.header.radio.model, "distribution");
+}
+
 TEST_F(RadioTest, TheRecordHasEachMessageAtEachReceiver) {
   set_channel();
   run_all({{send(milliseconds(1)), finish(milliseconds(20))},

@@ -41,6 +41,8 @@ Duration air_time(const Settings& settings, std::size_t bytes) {
 
 Duration least_delay(const Settings& settings) {
   if (settings.model == Model::kIdeal) return settings.delay;
+  if (settings.model == Model::kDistribution)
+    return settings.delay + uav::bounds(settings.drawn_delay).first;
   return settings.delay + air_time(settings, 0);
 }
 

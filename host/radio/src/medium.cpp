@@ -3,6 +3,7 @@
 // decides at each receiver what became of it. Every draw has a key, so none depends on the others.
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 #include <utility>
 
@@ -14,7 +15,7 @@ namespace tether::radio {
 
 std::string_view name(Outcome outcome) {
   return enum_name(outcome, {"delivered", "noise", "collision", "half_duplex", "queue_full",
-                             "too_long", "inbox_full", "waiting"});
+                             "too_long", "inbox_full", "waiting", "dropped"});
 }
 
 Medium::Medium(const Settings& settings, std::uint64_t seed, std::vector<std::string> uavs)
@@ -26,8 +27,8 @@ void Medium::for_receivers(const Message& message, Use use) const {
     if (uav != message.from && (!message.to || *message.to == uav)) use(uav);
 }
 
-void Medium::schedule(SimTime at, std::size_t uav, Kind kind, Message message) {
-  events_.push({{at, uav}, events_made_++, kind, std::move(message)});
+void Medium::schedule(SimTime at, std::size_t uav, Kind kind, Message message, Outcome outcome) {
+  events_.push({{at, uav}, events_made_++, kind, std::move(message), outcome});
 }
 
 void Medium::send(const Message& message) {
@@ -49,11 +50,48 @@ void Medium::handle_next(const LinkOf& link_of, std::vector<Arrival>& out) {
     if (event.kind == Kind::kSend) return accept(std::move(event.message), out);
     return finish(uav, now, link_of, out);
   }
+  if (event.kind == Kind::kSend && settings_.model == Model::kDistribution)
+    return draw_fates(event.message);
   if (event.kind == Kind::kSend && settings_.delay > Duration(0))
     return schedule(now + settings_.delay, uav, Kind::kEnd, std::move(event.message));
   for_receivers(event.message, [&](std::size_t to) {
-    out.push_back({.message = event.message, .to = to, .at = now});
+    out.push_back({.message = event.message, .to = to, .outcome = event.outcome, .at = now});
   });
+}
+
+// --- by distribution ----------------------------------------------------------------------------
+
+// Each receiver has an event of its own. A message that is dropped is so when it would arrive.
+void Medium::draw_fates(const Message& message) {
+  const double bits = 8.0 * static_cast<double>(message.bytes->size());
+  const double rate = settings_.data_rate_bit_s;
+  const Duration data(rate > 0.0 ? static_cast<std::int64_t>(std::ceil(bits / rate * 1e9)) : 0);
+  for_receivers(message, [&](std::size_t to) {
+    const Duration drawn =
+        uav::draw(settings_.drawn_delay,
+                  {.seed = seed_,
+                   .stream = random_stream(uavs_[message.from], uavs_[to], "radio delay"),
+                   .index = message.sequence});
+    Message copy = message;
+    copy.to = to;
+    const bool dropped = is_dropped(message.from, to, message.sequence);
+    schedule(message.sent_at + settings_.delay + drawn + data, message.from, Kind::kEnd,
+             std::move(copy), dropped ? Outcome::kDropped : Outcome::kDelivered);
+  });
+}
+
+bool Medium::is_dropped(std::size_t from, std::size_t to, std::uint64_t sequence) {
+  const auto draw = [&](const char* quantity) {
+    return KeyedRandom({.seed = seed_,
+                        .stream = random_stream(uavs_[from], uavs_[to], quantity),
+                        .index = sequence})
+        .uniform();
+  };
+  bool& is_burst = bursts_[{from, to}];
+  const double change =
+      is_burst ? settings_.burst_end_probability : settings_.burst_begin_probability;
+  if (draw("radio burst") < change) is_burst = !is_burst;
+  return is_burst || draw("radio loss") < settings_.loss_probability;
 }
 
 // --- the sender ---------------------------------------------------------------------------------

@@ -67,6 +67,85 @@ TEST(IdealMedium, OrdersOneInstantBySenderAndSequence) {
   EXPECT_EQ(order, (decltype(order){{1, 9}, {2, 4}, {2, 5}}));
 }
 
+Settings distribution() {
+  Settings settings;
+  settings.model = Model::kDistribution;
+  settings.data_rate_bit_s = 0.0;
+  return settings;
+}
+
+TEST(DrawnMedium, DelaysEachReceiverByItsOwnDrawSoMessagesOvertake) {
+  Settings settings = distribution();
+  settings.delay = Duration(1000);
+  settings.drawn_delay = uav::EmpiricalDelay{{Duration(300), Duration(50), Duration(100)}};
+  settings.data_rate_bit_s = 8e9;  // a byte takes 1 ns
+  EXPECT_EQ(least_delay(settings), Duration(1050));
+  Medium medium(settings, 1, names(3));
+  constexpr int kMessages = 300;
+  for (int i = 0; i < kMessages; ++i)
+    medium.send(message(0, 100 * i, static_cast<std::uint64_t>(i + 1), 7));
+  std::map<std::int64_t, int> delays_ns;
+  std::map<std::uint64_t, SimTime> first;
+  int apart = 0, overtaken = 0;
+  std::uint64_t newest = 0;
+  SimTime last{};
+  const auto arrivals = run(medium);
+  ASSERT_EQ(arrivals.size(), 2U * kMessages);
+  for (const Arrival& arrival : arrivals) {
+    EXPECT_EQ(arrival.outcome, Outcome::kDelivered);
+    ++delays_ns[(arrival.at - arrival.message.sent_at).count()];
+    const auto [other, is_new] = first.try_emplace(arrival.message.sequence, arrival.at);
+    apart += !is_new && other->second != arrival.at ? 1 : 0;
+    EXPECT_GE(arrival.at, last);
+    last = arrival.at;
+    if (arrival.to != 1) continue;
+    overtaken += arrival.message.sequence < newest ? 1 : 0;
+    newest = std::max(newest, arrival.message.sequence);
+  }
+  EXPECT_EQ(delays_ns.size(), 3U);
+  for (const std::int64_t ns : {1057, 1107, 1307}) EXPECT_NEAR(delays_ns[ns], 200, 45) << ns;
+  EXPECT_NEAR(apart, 200, 45);
+  EXPECT_GT(overtaken, 50);
+}
+
+// Bursts have a mean length of 1 / end; outside of them, each message is dropped by itself.
+TEST(DrawnMedium, DropsByItselfAndInBursts) {
+  Settings settings = distribution();
+  settings.loss_probability = 0.1;
+  settings.burst_begin_probability = 0.02;
+  settings.burst_end_probability = 0.125;
+  Medium medium(settings, 1, names(2));
+  constexpr int kMessages = 50'000;
+  for (int i = 0; i < kMessages; ++i)
+    medium.send(message(0, i, static_cast<std::uint64_t>(2 * i + 1), 7));
+  int dropped = 0, long_runs = 0, run_length = 0;
+  for (const Arrival& arrival : run(medium)) {
+    const bool is_dropped = arrival.outcome == Outcome::kDropped;
+    dropped += is_dropped ? 1 : 0;
+    run_length = is_dropped ? run_length + 1 : 0;
+    long_runs += run_length == 5 ? 1 : 0;
+  }
+  const double in_bursts = 0.02 / (0.02 + 0.125);
+  EXPECT_NEAR(1.0 * dropped / kMessages, in_bursts + 0.1 * (1.0 - in_bursts), 0.015);
+  EXPECT_GT(long_runs, 300) << "independent losses of the same share have some 20";
+}
+
+TEST(DrawnMedium, WhatIsInTransitIsKnownForEachReceiver) {
+  Settings settings = distribution();
+  settings.delay = Duration(1000);
+  settings.loss_probability = 1.0;
+  Medium medium(settings, 1, names(3));
+  medium.send(message(0, 10));
+  std::vector<Arrival> out;
+  medium.handle_next(near, out);
+  EXPECT_TRUE(out.empty());
+  const auto waiting = medium.in_transit(from_ns<SimTime>(500));
+  ASSERT_EQ(waiting.size(), 2U);
+  EXPECT_EQ(waiting[0].outcome, Outcome::kWaiting);
+  EXPECT_EQ(waiting[0].to, 1U);
+  EXPECT_EQ(waiting[1].to, 2U);
+}
+
 TEST(Medium, TooWeakASignalIsNoise) {
   Medium medium(log_distance(), 1, names(2));
   medium.send(message(0, 0));

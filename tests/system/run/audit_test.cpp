@@ -213,6 +213,24 @@ TEST_F(AuditOfAFlight, FindsAnEndThatIsNotThatOfTheFlight) {
                        {"limit", 0, [](Record& r) { r.header.time_limit += milliseconds(1); }}});
 }
 
+// Three UAVs that talk by a radio that loses a third, in bursts and alone.
+TEST_F(AuditOfAFlight, FindsWhatContradictsARadioByDistribution) {
+  const Substitution radio{
+      "[[condition]]\nname = \"host\"",
+      "[radio]\nmodel = \"distribution\"\ndelay_ms = 1\ndata_rate_bit_s = 1e6\n"
+      "delay = { kind = \"empirical\", samples_ms = [0.5, 3, 9] }\nloss_probability = 0.2\n"
+      "burst_begin_probability = 0.1\nburst_end_probability = 0.5\n\n"
+      "[[condition]]\nname = \"host\""};
+  const Record sound = fly("exchange", {two_more(""), radio});
+  expect_found(
+      sound,
+      {{"delivered as dropped", 0, [](Record& r) { fate(r, "delivered").outcome = "dropped"; }},
+       {"dropped as delivered", 0, [](Record& r) { fate(r, "dropped").outcome = "delivered"; }},
+       {"later than any delay", 0, [](Record& r) { fate(r, "delivered").at += milliseconds(10); }},
+       {"seed", 0, [](Record& r) { r.header.seed += 1; }},
+       {"bursts", 0, [](Record& r) { r.header.radio.burst_begin_probability = 0.0; }}});
+}
+
 // Three UAVs that talk at once, over a radio that is barely good enough.
 TEST_F(AuditOfAFlight, FindsWhatContradictsTheRadio) {
   const Substitution radio{"[[condition]]\nname = \"host\"",

@@ -381,6 +381,12 @@ void radio_members(auto& io, Maybe<RadioInfo> auto& m) {
   io("radio_data_rate_bit_s", m.data_rate_bit_s);
   if (!io.has("radio_inbox_messages", m.inbox_messages > 0)) return;
   io("radio_inbox_messages", m.inbox_messages);
+  if (io.has("radio_most_delay_ns", m.model == "distribution")) {
+    io("radio_most_delay_ns", m.most_delay);
+    io("radio_loss_probability", m.loss_probability);
+    io("radio_burst_begin_probability", m.burst_begin_probability);
+    io("radio_burst_end_probability", m.burst_end_probability);
+  }
   if (!io.has("radio_access", !m.access.empty())) return;
   io("radio_access", m.access);
   io("radio_queue_messages", m.queue_messages);

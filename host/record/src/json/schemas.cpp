@@ -249,7 +249,7 @@ const Schema kRadioMessageSchema{"tether.RadioMessage", R"json({
     "sent_at_ns": {"type": "integer", "description": "ET of the sender's call"},
     "at_ns": {"type": "integer", "description": "when it arrived, was lost, or the run ended"},
     "outcome": {"type": "string", "enum": ["delivered", "noise", "collision", "half_duplex",
-                                           "queue_full", "too_long", "inbox_full", "waiting"]},
+                                           "queue_full", "too_long", "inbox_full", "waiting", "dropped"]},
     "began_at_ns": {"type": "integer", "description": "ST at which the transmission began"},
     "distance_m": {"type": "number"},
     "walls": {"type": "integer", "minimum": 0, "description": "between the UAVs"},

@@ -217,6 +217,28 @@ StringMap changed(const std::string& name, const std::string& from, const std::s
 }
 
 // Records of earlier versions do not have them.
+TEST(JsonMetadata, DriversAndRadiosByDistributionAreReadBack) {
+  Interaction read = sensor_interaction();
+  read.sample_stamp = st_ms(7);
+  read.repeated_index = 4;
+  const auto again = from_json<Interaction>(json_of(read));
+  EXPECT_EQ(again.sample_stamp, read.sample_stamp);
+  EXPECT_EQ(again.repeated_index, read.repeated_index);
+
+  Header written = header();
+  written.sensors[0].driver = DriverInfo{Duration(-5), Duration(6), -20'000, 0.1, 1.0 / 3.0};
+  written.radio = {.model = "distribution",
+                   .least_delay = Duration(5),
+                   .inbox_messages = 3,
+                   .most_delay = Duration::max(),
+                   .loss_probability = 1.0 / 3.0,
+                   .burst_begin_probability = 0.1,
+                   .burst_end_probability = 0.7};
+  const Header got = header_from_metadata(to_metadata(written));
+  EXPECT_EQ(got.sensors[0].driver, written.sensors[0].driver);
+  EXPECT_EQ(got.radio, written.radio);
+}
+
 TEST(JsonMetadata, OptionalValuesHaveDefaults) {
   const std::string sensors = to_metadata(header()).at("sensors");
   const auto begin = sensors.find(R"(,"camera":{)");

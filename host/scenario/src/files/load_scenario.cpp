@@ -184,7 +184,7 @@ Condition read_condition(const toml::Table& table, Scenario& scenario) {
     read_own_clock(table, condition);
   }
   condition.replay = read_replay(table, condition, scenario);
-  if (table.has("radio")) condition.radio = read_radio(table);
+  if (table.has("radio")) condition.radio = read_radio(table, scenario.files);
   condition.real_time_factor = table.number_or("real_time_factor", kFactor, 0.0);
   if (condition.policy == Policy::kFreeRunning && condition.real_time_factor == 0.0) {
     table.fail(
@@ -431,7 +431,7 @@ Scenario read_scenario(const std::filesystem::path& file, const std::vector<Sett
   read_computers(root, scenario);
   read_uavs(root, scenario);
   require_users(scenario);
-  scenario.radio = read_radio(root);
+  scenario.radio = read_radio(root, scenario.files);
   read_motion(root, scenario);
   scenario.variations = read_vary(root);
   read_conditions(root, scenario);

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -30,6 +31,8 @@ using Delay = std::variant<ConstantDelay, NormalDelay, EmpiricalDelay>;
 
 /// The delay of one measurement: a pure function of its key. Never negative.
 Duration draw(const Delay& delay, const RandomKey& key);
+/// The least and the greatest delay that can be drawn.
+std::pair<Duration, Duration> bounds(const Delay& delay);
 /// The mean of the distribution as given (of the untruncated normal).
 Duration mean(const Delay& delay);
 

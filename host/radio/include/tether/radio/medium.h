@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <queue>
@@ -37,6 +38,7 @@ enum class Outcome : std::uint8_t {
   kTooLong,     ///< its air time is longer than a slot
   kInboxFull,   ///< the receiver had too many waiting; decided by the caller
   kWaiting,     ///< not known at the end of the run
+  kDropped,     ///< lost by the distribution
 };
 std::string_view name(Outcome outcome);
 
@@ -91,7 +93,8 @@ class Medium {
     Instant instant;
     std::uint64_t number = 0;  // in the order of creation
     Kind kind = Kind::kSend;
-    Message message{};  // of kSend, and of kEnd if the radio is ideal
+    Message message{};                      // of kSend, and of kEnd if there is no channel
+    Outcome outcome = Outcome::kDelivered;  // of kEnd by distribution
 
     bool operator>(const Event& other) const {
       return std::pair(instant, number) > std::pair(other.instant, other.number);
@@ -109,7 +112,10 @@ class Medium {
     std::uint64_t waits = 0;                   // drawn so far
   };
 
-  void schedule(SimTime at, std::size_t uav, Kind kind, Message message = {});
+  void schedule(SimTime at, std::size_t uav, Kind kind, Message message = {},
+                Outcome outcome = Outcome::kDelivered);
+  void draw_fates(const Message& message);
+  bool is_dropped(std::size_t from, std::size_t to, std::uint64_t sequence);
   void accept(Message message, std::vector<Arrival>& out);
   void plan(std::size_t uav, SimTime from, std::vector<Arrival>& out);
   void attempt(std::size_t uav, SimTime now, const LinkOf& link_of);
@@ -127,6 +133,7 @@ class Medium {
   std::uint64_t seed_;
   std::vector<std::string> uavs_;
   std::vector<Station> stations_;
+  std::map<std::pair<std::size_t, std::size_t>, bool> bursts_;  // from, to: one is under way
   std::priority_queue<Event, std::vector<Event>, std::greater<>> events_;
   std::uint64_t events_made_ = 0;
 };

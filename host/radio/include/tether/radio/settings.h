@@ -4,12 +4,14 @@
 #include <cstdint>
 
 #include <tether/base/time.h>
+#include <tether/uav/sensor_timing.h>
 
 namespace tether::radio {
 
 enum class Model : std::uint8_t {
-  kIdeal,        ///< every message arrives after `delay`
-  kLogDistance,  ///< path loss, noise, and one channel that all share
+  kIdeal,         ///< every message arrives after `delay`
+  kLogDistance,   ///< path loss, noise, and one channel that all share
+  kDistribution,  ///< delays and losses by distributions, wherever the UAVs are
 };
 enum class Access : std::uint8_t {
   kCsma,  ///< listen before talking
@@ -23,10 +25,20 @@ struct Settings {
   Duration delay{0};                 ///< from the call to the channel; ≥ 0
   std::size_t inbox_messages = 256;  ///< those that have arrived and were not received yet; ≥ 1
 
+  // Of kDistribution: for each message at each receiver.
+  uav::Delay drawn_delay{};       ///< added to `delay`
+  double loss_probability = 0.0;  ///< outside of a burst; [0, 1]
+  /// A burst of losses from one UAV to another begins, or ends, before a message: the model of
+  /// E. N. Gilbert, "Capacity of a Burst-Noise Channel", Bell System Technical Journal 39, 1960.
+  double burst_begin_probability = 0.0;  ///< [0, 1]
+  double burst_end_probability = 1.0;    ///< (0, 1]
+
+  // Of kLogDistance and kDistribution. Of kDistribution, 0: bytes take no time.
+  double data_rate_bit_s = 6e6;  ///< > 0
+
   // Of kLogDistance.
   Access access = Access::kCsma;
   std::size_t queue_messages = 64;  ///< those that one UAV waits to transmit; ≥ 1
-  double data_rate_bit_s = 6e6;     ///< > 0
   Duration preamble{20'000};        ///< before the data; ≥ 0
   std::size_t header_bytes = 36;    ///< sent with each message
   double bandwidth_hz = 20e6;       ///< > 0

@@ -185,11 +185,17 @@ struct EmulatorInfo {
 };
 /// The radio between the UAVs. A record of one UAV has none.
 struct RadioInfo {
-  std::string model;             ///< "ideal" or "log_distance"; empty: none
+  std::string model;             ///< "ideal", "log_distance" or "distribution"; empty: none
   Duration least_delay{0};       ///< of a message without bytes
   double data_rate_bit_s = 0.0;  ///< 0: a message takes no time for its bytes
   /// How many messages an inbox holds. 0: this and what follows is unknown (Tether 0.1.0).
   std::uint64_t inbox_messages = 0;
+
+  // Of "distribution": radio::Settings.
+  Duration most_delay{0};  ///< of a message without bytes
+  double loss_probability = 0.0;
+  double burst_begin_probability = 0.0;
+  double burst_end_probability = 0.0;
 
   // Of "log_distance": radio::Settings.
   std::string access{};  ///< "csma" or "tdma"

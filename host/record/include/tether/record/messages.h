@@ -210,10 +210,10 @@ struct RadioMessage {
   SimTime sent_at;  ///< ET of the call
   SimTime at;       ///< when it arrived, was lost, or the run ended
   /// "delivered"; lost: "noise", "collision", "half_duplex", "queue_full", "too_long",
-  /// "inbox_full"; "waiting" at the end of the run.
+  /// "inbox_full", "dropped"; "waiting" at the end of the run.
   std::string outcome;
   std::optional<SimTime> began_at{};     ///< of the transmission
-  std::optional<double> distance_m{};    ///< between the UAVs; none: ideal, or not transmitted
+  std::optional<double> distance_m{};    ///< between the UAVs; none: no channel, or not transmitted
   std::optional<std::uint64_t> walls{};  ///< between them
   std::optional<double> snr_db{};        ///< signal to noise and interference
   friend bool operator==(const RadioMessage&, const RadioMessage&) = default;
