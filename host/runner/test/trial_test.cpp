@@ -99,13 +99,13 @@ TEST_F(Trial, KeepsWarningsAndPassesThemOnBeforeTheRun) {
   for (const Warning& warning : passed_on) EXPECT_THAT(list, HasSubstr(to_line(warning)));
 }
 
-// Wind, for example: the embedded simulator has none, Gazebo has.
+// A plugin that moves something, for example: the embedded simulator has none, Gazebo has.
 TEST_F(Trial, DoubtsNoVerdictForWhatTheSimulatorItselfReadsOfTheWorld) {
   spec_.scenario.world =
       scratch_.write("w.sdf",
                      "<sdf version='1.7'><world name='w'>"
                      "<physics name='p' type='ode'><max_step_size>0.002</max_step_size></physics>"
-                     "<wind><linear_velocity>5 0 0</linear_velocity></wind></world></sdf>");
+                     "<plugin name='p' filename='libmoving_platform.so'/></world></sdf>");
   spec_.scenario.step.reset();
   observer_.on_status = [&](const coordinator::RunStatus&) { stop_.request_stop(); };
   for (const bool reads_world : {false, true}) {

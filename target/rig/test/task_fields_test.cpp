@@ -30,8 +30,8 @@ TEST(TaskFields, AreOfTheTasksInThePapersOrder) {
   for (const TaskKind& kind : task_kinds()) names.push_back(kind.name);
   EXPECT_THAT(names, ::testing::ElementsAre("sensor_characterization", "relative_position",
                                             "face_anchor", "move_forward", "closed_path", "go_to",
-                                            "search", "hold", "inspect", "land", "search_pair",
-                                            "avoid_by_scan", "fly_through_gates"));
+                                            "search", "hold", "inspect", "land_on", "land",
+                                            "search_pair", "avoid_by_scan", "fly_through_gates"));
 }
 
 TEST(TaskFields, HaveUniqueNamesAndDescriptions) {

@@ -15,7 +15,9 @@ constexpr double kIntegralShare = 0.4;
 /// It sinks while it is no farther beside the anchor than this, and this share of its height.
 constexpr double kAlways_m = 0.15, kShareOfHeight = 0.2;
 /// A rangefinder that is nearer to the ground than it can measure reads −inf.
-constexpr double kStanding_m = 0.08;
+constexpr double kStanding_m = 0.045;
+/// Of the speed of the descent, at the end.
+constexpr double kTouch = 0.6;
 constexpr Duration kRest = std::chrono::seconds(1);
 
 uav::Vec3 within(const uav::Vec3& v, double most) {
@@ -105,7 +107,7 @@ Progress LandOnTask::approach(TaskContext& context, const View& view) {
 }
 
 Progress LandOnTask::sink(TaskContext& context) {
-  const uav::Vec3 velocity_H{carried_H_m_s_.x, carried_H_m_s_.y, -options_.descent_m_s};
+  const uav::Vec3 velocity_H{carried_H_m_s_.x, carried_H_m_s_.y, -kTouch * options_.descent_m_s};
   const Status sinking = context.vehicle().command_velocity({velocity_H, 0.0});
   return sinking ? std::nullopt : Progress(TaskOutcome::failed(sinking.failure()));
 }

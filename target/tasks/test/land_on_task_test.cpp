@@ -34,7 +34,7 @@ class OverPad : public client::Vehicle {
          uav::CameraProperties{uav::CameraModel::from_horizontal_fov(160, 120, 1.4)}},
         {"range", down, 30.0, uav::RangeProperties{0.04, 10.0}},
         {"imu", {}, 100.0, uav::ImuProperties{}}};
-    catalogue_.anchors = {{"pad", uav::AnchorShape::kBox, {0.4, 0.4, 0.01}, {0.9, 0.35, 0.05}}};
+    catalogue_.anchors = {{"pad", uav::AnchorShape::kBox, {0.4, 0.4, 0.4}, {0.05, 0.15, 0.85}}};
     catalogue_.limits = {4, 800.0, 15.0};
   }
 
@@ -44,12 +44,14 @@ class OverPad : public client::Vehicle {
     if (sensor == "range") return uav::Sample(uav::RangeSample{at(), 0, height_m()});
     if (sensor == "imu") {
       advance(milliseconds(10));
-      return uav::Sample(uav::ImuSample{.sampled_at = at()});
+      uav::ImuSample reading;
+      reading.sampled_at = at();
+      return uav::Sample(reading);
     }
     advance(milliseconds(33));
     vision::testing::SyntheticScene scene;
     if (options_.pad_is_there)
-      scene.boxes.push_back({{pad_x_m(), 0.0, 0.0}, 0.0, {0.4, 0.4, 0.01}, {0.9, 0.35, 0.05}});
+      scene.boxes.push_back({{pad_x_m(), 0.0, -0.2}, 0.0, {0.4, 0.4, 0.4}, {0.05, 0.15, 0.85}});
     const uav::Pose X_WB{p_WB_m_, {}};
     const uav::Pose X_BC = catalogue_.sensors[0].X_BS * uav::Pose{{}, uav::q_body_from_optical()};
     uav::CameraSample image = scene.render(

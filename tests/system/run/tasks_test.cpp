@@ -45,7 +45,7 @@ TEST_P(ShippedScenario, ReachesItsGoalOnAFastComputer) {
 INSTANTIATE_TEST_SUITE_P(Tasks, ShippedScenario,
                          testing::Values("sensor_characterization", "relative_position",
                                          "face_anchor", "move_forward", "mission", "avoid_by_scan",
-                                         "fly_through_gates"),
+                                         "fly_through_gates", "follow_moving", "land_on_platform"),
                          [](const auto& one) { return std::string(one.param); });
 
 struct Slow {
@@ -65,7 +65,8 @@ TEST_P(SlowComputer, MissesTheGoal) {
 INSTANTIATE_TEST_SUITE_P(Tasks, SlowComputer,
                          testing::Values(Slow{"relative_position", 40}, Slow{"face_anchor", 50},
                                          Slow{"move_forward", 60}, Slow{"closed_path", 150},
-                                         Slow{"avoid_by_scan", 75}, Slow{"fly_through_gates", 10}),
+                                         Slow{"avoid_by_scan", 75}, Slow{"fly_through_gates", 10},
+                                         Slow{"follow_moving", 90}, Slow{"land_on_platform", 60}),
                          [](const auto& one) { return std::string(one.param.scenario); });
 
 // Its goals are reached late: what a slow computer spoils is the reaction time, of which 8 s of the

@@ -31,14 +31,14 @@ class NamedFile : public testing::Test {
 TEST_F(NamedFile, IsAShippedOneOrOneBesideTheFileThatNamesIt) {
   EXPECT_EQ(named(ShippedKind::kWorld, "room"), shipped_ / "worlds/room.sdf");
   EXPECT_EQ(named(ShippedKind::kModel, "hummingbird"), shipped_ / "models/hummingbird/model.sdf");
-  const auto yard = scratch_.write("yard.sdf", "<sdf/>");
-  EXPECT_EQ(named(ShippedKind::kWorld, "yard.sdf"), yard);
+  const auto court = scratch_.write("court.sdf", "<sdf/>");
+  EXPECT_EQ(named(ShippedKind::kWorld, "court.sdf"), court);
   const auto room = scratch_.write("room", "<sdf/>");
   EXPECT_EQ(named(ShippedKind::kWorld, "room"), room);
 }
 
 TEST_F(NamedFile, SuggestsWhatMayBeMeant) {
-  scratch_.write("yard.sdf", "<sdf/>");
+  scratch_.write("court.sdf", "<sdf/>");
   struct Case {
     ShippedKind kind;
     const char *given, *suggestion;
@@ -48,8 +48,8 @@ TEST_F(NamedFile, SuggestsWhatMayBeMeant) {
         Case{ShippedKind::kModel, "humingbird", "did you mean 'hummingbird'?"},
         Case{ShippedKind::kEnergy, "humming", "'hummingbird'"},
         Case{ShippedKind::kWorld, "face_anchor", "is a shipped scenario, not a world"},
-        Case{ShippedKind::kWorld, "yard", "write 'yard.sdf'"},
-        Case{ShippedKind::kWorld, "yrd.sdf", "did you mean 'yard.sdf'?"},
+        Case{ShippedKind::kWorld, "court", "write 'court.sdf'"},
+        Case{ShippedKind::kWorld, "curt.sdf", "did you mean 'court.sdf'?"},
         Case{ShippedKind::kWorld, "../worlds/room.sdf", "write \"room\""},
         Case{ShippedKind::kModel, "../../data/models/hummingbird/model.sdf",
              "write \"hummingbird\""}})

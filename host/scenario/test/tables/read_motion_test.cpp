@@ -53,31 +53,5 @@ TEST(ReadMotion, RefusesWhatCannotMove) {
   EXPECT_THAT(problem("[wind]\nvelocity_m_s = [100, 0, 0]"), HasSubstr("velocity_m_s"));
 }
 
-sim::World house_and_cart() {
-  sim::World world;
-  world.models = {{"cart", {}, true, {{}}}, {"house", {}, true, {}}, {"house::door", {}, true, {}}};
-  return world;
-}
-
-TEST(ResolveMotion, DrivesTheNamedModelAndWhatIsNestedInIt) {
-  sim::World driven = house_and_cart();
-  driven.models[2].name = "cart::load";
-  resolve_motion(motion_of(kMoving), false, driven);
-  EXPECT_FALSE(driven.models[0].is_static);
-  EXPECT_TRUE(driven.models[0].path.has_value());
-  EXPECT_TRUE(driven.models[1].is_static);
-  EXPECT_TRUE(driven.models[2].path.has_value()) << "nested";
-}
-
-TEST(ResolveMotion, RefusesAModelThatItCannotDrive) {
-  const auto problem = [](Scenario scenario, const std::string& model, bool is_read_elsewhere) {
-    sim::World of_file = house_and_cart();
-    scenario.moving[0].model = model;
-    return bad_file_error([&] { resolve_motion(scenario, is_read_elsewhere, of_file); }).what();
-  };
-  EXPECT_THAT(problem(motion_of(kMoving), "kart", false), HasSubstr("did you mean 'cart'"));
-  EXPECT_THAT(problem(motion_of(kMoving), "cart", true), HasSubstr("embedded simulator"));
-}
-
 }  // namespace
 }  // namespace tether::scenario

@@ -43,11 +43,12 @@ TEST(LoadWorld, PutsAModelWhereItsFrameSays) {
   expect_near((X_WL * model.links[0].visuals[0].X_LV).p, {1.0, 2.5, 5.0});
 }
 
-TEST(LoadWorld, ReadsPhysicsSceneAndLights) {
+TEST(LoadWorld, ReadsPhysicsAirSceneAndLights) {
   const Loaded loaded = load_content(R"(
       <physics name='p' type='ode'><max_step_size>0.002</max_step_size>
         <real_time_factor>1</real_time_factor></physics>
       <gravity>0 0 -1.62</gravity>
+      <wind><linear_velocity>3 -1 0</linear_velocity></wind>
       <scene><ambient>0.25 0.25 0.25 1</ambient><background>0 0.5 1 1</background></scene>
       <light name='lamp' type='spot'><pose>1 2 3 0 0 0</pose><cast_shadows>true</cast_shadows>
         <diffuse>0.5 0.5 0.5 1</diffuse><intensity>0.5</intensity><direction>1 0 0</direction>
@@ -58,6 +59,7 @@ TEST(LoadWorld, ReadsPhysicsSceneAndLights) {
   EXPECT_THAT(loaded.warnings, IsEmpty());
   const World& world = loaded.world;
   EXPECT_EQ(world.step, std::chrono::milliseconds(2));
+  EXPECT_EQ(world.wind, (uav::Wind{.v_WA_m_s = {3.0, -1.0, 0.0}}));
   EXPECT_EQ(world.step_from, "world");
   EXPECT_DOUBLE_EQ(world.gravity_m_s2, 1.62);
   EXPECT_EQ(world.ambient_rgb, (Vec3{0.25, 0.25, 0.25}));

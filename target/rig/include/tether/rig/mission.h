@@ -27,13 +27,11 @@
 
 namespace tether::rig {
 
-using TaskOptions =
-    std::variant<tasks::SensorCharacterizationOptions, tasks::RelativePositionOptions,
-                 tasks::FaceAnchorOptions, tasks::MoveForwardOptions, tasks::ClosedPathOptions,
-                 tasks::GoToOptions, tasks::SearchOptions, tasks::HoldOptions,
-                 tasks::InspectOptions, tasks::LandOptions, tasks::LandOnOptions,
-                 tasks::SearchPairOptions,
-                 tasks::AvoidByScanOptions, tasks::FlyThroughGatesOptions>;
+using TaskOptions = std::variant<
+    tasks::SensorCharacterizationOptions, tasks::RelativePositionOptions, tasks::FaceAnchorOptions,
+    tasks::MoveForwardOptions, tasks::ClosedPathOptions, tasks::GoToOptions, tasks::SearchOptions,
+    tasks::HoldOptions, tasks::InspectOptions, tasks::LandOptions, tasks::LandOnOptions,
+    tasks::SearchPairOptions, tasks::AvoidByScanOptions, tasks::FlyThroughGatesOptions>;
 
 struct TaskSpec {
   TaskOptions options;
