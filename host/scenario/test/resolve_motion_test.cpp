@@ -35,7 +35,8 @@ TEST(ResolveMotion, DrivesTheNamedModelAndWhatIsNestedInIt) {
 }
 
 TEST(ResolveMotion, RefusesAModelThatItCannotDrive) {
-  const auto problem = [](Scenario scenario, const std::string& model, bool is_read_elsewhere) {
+  const auto problem = [](Scenario scenario, const std::string& model,
+                          bool is_read_elsewhere) -> std::string {
     sim::World of_file = house_and_cart();
     scenario.moving[0].model = model;
     return bad_file_error([&] { resolve_motion(scenario, is_read_elsewhere, of_file); }).what();

@@ -16,7 +16,7 @@ void DeadReckoning::calibrate(const uav::ImuSample& reading) {
   ++calibrations_;
 }
 
-uav::Vec3 DeadReckoning::acceleration_H0(const uav::ImuSample& reading) const {
+uav::Vec3 DeadReckoning::acceleration(const uav::ImuSample& reading) const {
   const uav::Vec3 bias_S = calibrations_ > 0 ? (1.0 / calibrations_) * excess_S_ : uav::Vec3{};
   const uav::Vec3 a_W = rotate(reading.q_WS, reading.specific_force_m_s2 - bias_S) - kUp_m_s2;
   return rotate(uav::from_axis_angle({0, 0, 1}, -starting_yaw_), a_W);
@@ -26,12 +26,12 @@ void DeadReckoning::update(const uav::ImuSample& reading) {
   const double yaw = uav::yaw_rad(reading.q_WS * q_SB_);
   if (!last_) {
     starting_yaw_ = yaw;
-    last_ = {reading.sampled_at, acceleration_H0(reading)};
+    last_ = {reading.sampled_at, acceleration(reading)};
     return;
   }
   const double dt_s = to_seconds(reading.sampled_at - last_->sampled_at);
   if (dt_s <= 0.0) return;
-  const uav::Vec3 a = acceleration_H0(reading);
+  const uav::Vec3 a = acceleration(reading);
   const uav::Vec3 v = v_ + (0.5 * dt_s) * (last_->a_H0 + a);
   const uav::Vec3 step = (0.5 * dt_s) * (v_ + v);
   p_ = p_ + step;

@@ -40,7 +40,7 @@ class DeadReckoning {
     SimTime sampled_at;
     uav::Vec3 a_H0;
   };
-  uav::Vec3 acceleration_H0(const uav::ImuSample& reading) const;
+  uav::Vec3 acceleration(const uav::ImuSample& reading) const;
 
   uav::Quat q_SB_;
   uav::Vec3 excess_S_;  ///< sum over the calibration readings

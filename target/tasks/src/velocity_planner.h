@@ -35,6 +35,6 @@ struct Plan {
 /// Obstacles and velocities are in H, the goal is relative to the UAV. Pure arithmetic; computes
 /// directions × speeds × steps × obstacles distances.
 Plan plan_velocity(const std::vector<Vec2>& obstacles, const Vec2& velocity_H_m_s,
-                   const Vec2& goal_H_m, const AvoidByScanOptions& options);
+                   const Vec2& goal_H_m, const AvoidByScanOptions& wanted);
 
 }  // namespace tether::tasks

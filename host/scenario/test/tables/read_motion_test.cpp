@@ -40,7 +40,7 @@ TEST(ReadMotion, ReadsWindAndPaths) {
 }
 
 TEST(ReadMotion, RefusesWhatCannotMove) {
-  const auto problem = [](const std::string& text) {
+  const auto problem = [](const std::string& text) -> std::string {
     return bad_file_error([&] { motion_of(text); }).what();
   };
   const std::string start = "[[moving]]\nmodel = \"cart\"\nwaypoint = [ { at_s = 1, ";
