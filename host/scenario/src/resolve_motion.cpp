@@ -1,3 +1,5 @@
+#include "model_parts.h"
+
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -13,11 +15,6 @@ namespace {
   throw Error(ErrorCode::kBadFile, at, table + " " + problem).about(about);
 }
 
-/// Models that are nested in it belong to it.
-bool is_part_of(const sim::Model& model, const std::string& name) {
-  return model.name == name || model.name.starts_with(name + "::");
-}
-
 void drive(const MovingModel& moving, sim::World& world) {
   const auto model = std::ranges::find(world.models, moving.model, &sim::Model::name);
   if (model == world.models.end()) {
@@ -30,7 +27,7 @@ void drive(const MovingModel& moving, sim::World& world) {
   }
   const uav::Vec3 p_WO = model->X_WM.p;
   for (sim::Model& part : world.models) {
-    if (!is_part_of(part, moving.model)) continue;
+    if (part.name != moving.model && !is_nested_in(part, moving.model)) continue;
     part.is_static = false;
     part.path = moving.path;
     part.p_WO = p_WO;

@@ -2,6 +2,8 @@
 // it. Positions and angles are added to those of the files; factors multiply. A UAV's controller
 // knows its mass and its rotors, as that of a real one is tuned to them.
 
+#include "model_parts.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -208,7 +210,7 @@ void change_paths(const Variation& variation, double value, sim::World& world) {
                                 "with [[moving]]",
                                 variation.of));
   for (sim::Model& model : world.models)
-    if (model.path && (model.name == variation.of || model.name.starts_with(variation.of + "::")))
+    if (model.path && (model.name == variation.of || is_nested_in(model, variation.of)))
       quantity_of(variation).change(world, nullptr, &model, nullptr, value);
 }
 
@@ -262,7 +264,7 @@ void place_anchor(const sim::Model& model, const uav::Pose& X_WM_before, sim::Wo
 void move_nested(sim::Model& model, const uav::Pose& X_WM_before, sim::World& world) {
   model.p_WO = model.p_WO + (model.X_WM.p - X_WM_before.p);
   for (sim::Model& part : world.models) {
-    if (!part.name.starts_with(model.name + "::")) continue;
+    if (!is_nested_in(part, model.name)) continue;
     const uav::Pose before = part.X_WM;
     part.X_WM = model.X_WM * (uav::inverse(X_WM_before) * before);
     part.p_WO = model.p_WO;

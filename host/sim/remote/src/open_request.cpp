@@ -81,7 +81,7 @@ protocol::Open make_open(const World& world, const WarningSink& warn) {
     warn({Consequence::kBehavesDifferent,
           {world.file.string()},
           "<wind>",
-          "is simulated by the embedded simulator only; here the air stands still"});
+          "has no effect: only the embedded simulator simulates wind"});
   const ViewSize size = largest_view(world);
   protocol::Open open;
   open.world_name = world.name;
