@@ -5,9 +5,9 @@
 
 #include "sensors/navigation.h"
 
-#include "geodesy.h"
-
 #include <cmath>
+
+#include <tether/sim/geodesy.h>
 
 namespace tether::sim {
 namespace {

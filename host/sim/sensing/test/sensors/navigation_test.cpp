@@ -1,13 +1,13 @@
 #include "sensors/navigation.h"
 
-#include "geodesy.h"
-
 #include <cmath>
 #include <functional>
 #include <numbers>
 #include <vector>
 
 #include <gtest/gtest.h>
+
+#include <tether/sim/geodesy.h>
 
 namespace tether::sim {
 namespace {

@@ -1,9 +1,9 @@
-#include "geodesy.h"
-
 #include <cmath>
 #include <numbers>
 
 #include <gtest/gtest.h>
+
+#include <tether/sim/geodesy.h>
 
 namespace tether::sim {
 namespace {

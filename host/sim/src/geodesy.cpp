@@ -1,9 +1,8 @@
-#include "geodesy.h"
-
 #include <algorithm>
 #include <cmath>
 
 #include <tether/base/units.h>
+#include <tether/sim/geodesy.h>
 
 namespace tether::sim {
 namespace {
