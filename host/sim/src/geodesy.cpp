@@ -39,6 +39,31 @@ Geodetic geodetic_of_ecef(const Vec3& p) {
   return {deg_from_rad(latitude_rad), deg_from_rad(std::atan2(p.y, p.x)), altitude_m};
 }
 
+Vec3 ecef_of(const Geodetic& point) {
+  const double latitude_rad = rad_from_deg(point.latitude_deg);
+  const double longitude_rad = rad_from_deg(point.longitude_deg);
+  const double n_m = prime_vertical_m(std::sin(latitude_rad));
+  const double across_m = (n_m + point.altitude_m) * std::cos(latitude_rad);
+  return {across_m * std::cos(longitude_rad), across_m * std::sin(longitude_rad),
+          (n_m * (1.0 - kEccentricity2) + point.altitude_m) * std::sin(latitude_rad)};
+}
+
+// The plane that touches the ellipsoid at a place, in the Earth's own frame.
+struct Horizon {
+  Vec3 origin, east, north, up;
+
+  explicit Horizon(const Place& place)
+      : origin(ecef_of({place.latitude_deg, place.longitude_deg, place.elevation_m})) {
+    const double latitude_rad = rad_from_deg(place.latitude_deg);
+    const double longitude_rad = rad_from_deg(place.longitude_deg);
+    const double sin_lat = std::sin(latitude_rad), cos_lat = std::cos(latitude_rad);
+    const double sin_lon = std::sin(longitude_rad), cos_lon = std::cos(longitude_rad);
+    east = {-sin_lon, cos_lon, 0.0};
+    north = {-sin_lat * cos_lon, -sin_lat * sin_lon, cos_lat};
+    up = {cos_lat * cos_lon, cos_lat * sin_lon, sin_lat};
+  }
+};
+
 }  // namespace
 
 Vec3 to_enu(const Place& place, const Vec3& v_W) {
@@ -46,20 +71,22 @@ Vec3 to_enu(const Place& place, const Vec3& v_W) {
   return {v_W.x * c + v_W.y * s, -v_W.x * s + v_W.y * c, v_W.z};
 }
 
+Vec3 from_enu(const Place& place, const Vec3& v_ENU) {
+  const double s = std::sin(place.heading_rad), c = std::cos(place.heading_rad);
+  return {v_ENU.x * c - v_ENU.y * s, v_ENU.x * s + v_ENU.y * c, v_ENU.z};
+}
+
 Geodetic geodetic_of(const Place& place, const Vec3& p_W) {
-  const double latitude_rad = rad_from_deg(place.latitude_deg);
-  const double longitude_rad = rad_from_deg(place.longitude_deg);
-  const double sin_lat = std::sin(latitude_rad), cos_lat = std::cos(latitude_rad);
-  const double sin_lon = std::sin(longitude_rad), cos_lon = std::cos(longitude_rad);
-  const double n_m = prime_vertical_m(sin_lat);
-  const Vec3 origin{(n_m + place.elevation_m) * cos_lat * cos_lon,
-                    (n_m + place.elevation_m) * cos_lat * sin_lon,
-                    (n_m * (1.0 - kEccentricity2) + place.elevation_m) * sin_lat};
+  const Horizon horizon(place);
   const Vec3 enu = to_enu(place, p_W);
-  return geodetic_of_ecef(
-      {origin.x - sin_lon * enu.x - sin_lat * cos_lon * enu.y + cos_lat * cos_lon * enu.z,
-       origin.y + cos_lon * enu.x - sin_lat * sin_lon * enu.y + cos_lat * sin_lon * enu.z,
-       origin.z + cos_lat * enu.y + sin_lat * enu.z});
+  return geodetic_of_ecef(horizon.origin + enu.x * horizon.east + enu.y * horizon.north +
+                          enu.z * horizon.up);
+}
+
+Vec3 point_of(const Place& place, const Geodetic& point) {
+  const Horizon horizon(place);
+  const Vec3 p = ecef_of(point) - horizon.origin;
+  return from_enu(place, {dot(p, horizon.east), dot(p, horizon.north), dot(p, horizon.up)});
 }
 
 // Above the troposphere, as at its top.

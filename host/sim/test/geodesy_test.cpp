@@ -58,5 +58,15 @@ TEST(StandardAtmosphere, HasThePressuresOfTheStandard) {
   EXPECT_TRUE(std::isfinite(standard_altitude_m(-1.0)));
 }
 
+TEST(Geodesy, APointComesBackFromItsPlaceOnEarth) {
+  const Place place{47.4, 8.5, 488.0, 0.3};
+  for (const uav::Vec3& p_W :
+       {uav::Vec3{}, uav::Vec3{120.0, -30.0, 4.0}, uav::Vec3{-5000.0, 8000.0, 900.0}}) {
+    const uav::Vec3 back = point_of(place, geodetic_of(place, p_W));
+    EXPECT_LT(norm(back - p_W), 1e-6);
+    EXPECT_LT(norm(from_enu(place, to_enu(place, p_W)) - p_W), 1e-9);
+  }
+}
+
 }  // namespace
 }  // namespace tether::sim

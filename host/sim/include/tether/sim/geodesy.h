@@ -14,9 +14,13 @@ struct Geodetic {
 
 /// Where a point of W is on Earth: W is the plane that touches the ellipsoid at the place.
 Geodetic geodetic_of(const Place& place, const uav::Vec3& p_W);
+/// The inverse.
+uav::Vec3 point_of(const Place& place, const Geodetic& point);
 
 /// A vector of W along east, north and up of the place.
 uav::Vec3 to_enu(const Place& place, const uav::Vec3& v_W);
+/// The inverse.
+uav::Vec3 from_enu(const Place& place, const uav::Vec3& v_ENU);
 
 /// The pressure of the standard atmosphere [Pa] at an altitude above sea level, up to 11 km
 /// (ISO 2533:1975), and the altitude of a pressure [m].
