@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <tether/mavlink/message.h>
+
+namespace tether::mavlink {
+
+/// Who sends.
+struct Address {
+  std::uint8_t system = 0;
+  std::uint8_t component = 0;
+  friend bool operator==(const Address&, const Address&) = default;
+};
+
+struct Frame {
+  Address from;
+  std::uint8_t sequence = 0;
+  int version = 2;  ///< of MAVLink
+  bool is_signed = false;
+  Message message;
+};
+
+/// A frame of MAVLink 2, without a signature: zeros at the end of the payload are left out.
+std::vector<std::uint8_t> encode(const Message& message, Address from, std::uint8_t sequence);
+
+/// What was in a stream beside frames of the table.
+struct DecoderCounts {
+  std::uint64_t skipped_bytes = 0;    ///< between frames
+  std::uint64_t wrong_checksums = 0;  ///< of frames of the table
+  std::uint64_t unknown = 0;          ///< frames of messages that are not in the table
+  std::uint64_t incompatible = 0;     ///< frames with flags that are not known
+};
+
+/// Reads frames of MAVLink 1 and 2 from a stream of bytes, whatever these are. A signature is not
+/// checked. Not thread-safe.
+class Decoder {
+ public:
+  /// More bytes, in any pieces. Returns the frames that they complete, in order.
+  std::vector<Frame> push(std::span<const std::uint8_t> bytes);
+  const DecoderCounts& counts() const { return counts_; }
+
+ private:
+  enum class Outcome { kFrame, kWait, kSkip };
+  Outcome take(std::span<const std::uint8_t> bytes, std::size_t& used, std::vector<Frame>& frames);
+
+  std::vector<std::uint8_t> rest_;  // of what may become a frame
+  DecoderCounts counts_;
+};
+
+}  // namespace tether::mavlink

@@ -1,0 +1,104 @@
+#include "crc.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
+#include <tether/mavlink/frame.h>
+
+namespace tether::mavlink {
+namespace {
+
+constexpr std::uint8_t kMagic1 = 0xFE, kMagic2 = 0xFD;
+constexpr std::size_t kHeader1 = 6, kHeader2 = 10, kChecksum = 2, kSignature = 13;
+constexpr std::uint8_t kIsSigned = 1;
+
+std::uint16_t checksum(std::span<const std::uint8_t> without_magic, std::uint8_t crc_extra) {
+  Crc crc;
+  crc.add(without_magic);
+  crc.add(crc_extra);
+  return crc.value();
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> encode(const Message& message, Address from, std::uint8_t sequence) {
+  const auto payload = message.payload();
+  std::size_t length = payload.size();
+  while (length > 1 && payload[length - 1] == 0) --length;
+  const std::uint32_t id = message.type().id;
+  std::vector<std::uint8_t> bytes = {kMagic2,
+                                     static_cast<std::uint8_t>(length),
+                                     0,
+                                     0,
+                                     sequence,
+                                     from.system,
+                                     from.component,
+                                     static_cast<std::uint8_t>(id & 0xFFU),
+                                     static_cast<std::uint8_t>(id >> 8U & 0xFFU),
+                                     static_cast<std::uint8_t>(id >> 16U)};
+  bytes.insert(bytes.end(), payload.begin(), payload.begin() + static_cast<std::ptrdiff_t>(length));
+  const std::uint16_t crc = checksum(std::span(bytes).subspan(1), message.type().crc_extra);
+  bytes.push_back(static_cast<std::uint8_t>(crc & 0xFFU));
+  bytes.push_back(static_cast<std::uint8_t>(crc >> 8U));
+  return bytes;
+}
+
+std::vector<Frame> Decoder::push(std::span<const std::uint8_t> bytes) {
+  rest_.insert(rest_.end(), bytes.begin(), bytes.end());
+  std::vector<Frame> frames;
+  std::span<const std::uint8_t> left = rest_;
+  while (!left.empty()) {
+    std::size_t used = 1;
+    const Outcome outcome = take(left, used, frames);
+    if (outcome == Outcome::kWait) break;
+    if (outcome == Outcome::kSkip) counts_.skipped_bytes += used;
+    left = left.subspan(used);
+  }
+  rest_.erase(rest_.begin(), rest_.end() - static_cast<std::ptrdiff_t>(left.size()));
+  return frames;
+}
+
+// What begins at the first byte. A frame whose checksum is wrong may be no frame, so only its first
+// byte is skipped; of a message that is not in the table, the checksum cannot be known.
+Decoder::Outcome Decoder::take(std::span<const std::uint8_t> bytes, std::size_t& used,
+                               std::vector<Frame>& frames) {
+  const bool is_2 = bytes[0] == kMagic2;
+  if (!is_2 && bytes[0] != kMagic1) return Outcome::kSkip;
+  const std::size_t header = is_2 ? kHeader2 : kHeader1;
+  if (bytes.size() < header) return Outcome::kWait;
+  const std::size_t length = bytes[1];
+  const bool is_signed = is_2 && (bytes[2] & kIsSigned) != 0;
+  if (is_2 && (bytes[2] & ~kIsSigned) != 0) {
+    ++counts_.incompatible;
+    return Outcome::kSkip;
+  }
+  const std::size_t whole = header + length + kChecksum + (is_signed ? kSignature : 0);
+  if (bytes.size() < whole) return Outcome::kWait;
+  const std::uint32_t id =
+      is_2 ? bytes[7] | std::uint32_t{bytes[8]} << 8U | std::uint32_t{bytes[9]} << 16U : bytes[5];
+  const MessageType* type = find_type(id);
+  if (type == nullptr) {
+    ++counts_.unknown;
+    used = whole;
+    return Outcome::kSkip;
+  }
+  const std::size_t end = header + length;
+  const std::uint16_t crc = checksum(bytes.subspan(1, end - 1), type->crc_extra);
+  if (bytes[end] != (crc & 0xFFU) || bytes[end + 1] != crc >> 8U) {
+    ++counts_.wrong_checksums;
+    return Outcome::kSkip;
+  }
+  const std::size_t at = is_2 ? 4 : 2;
+  Frame frame{.from = {bytes[at + 1], bytes[at + 2]},
+              .sequence = bytes[at],
+              .version = is_2 ? 2 : 1,
+              .is_signed = is_signed,
+              .message = Message(*type)};
+  frame.message.set_payload(bytes.subspan(header, length));
+  frames.push_back(std::move(frame));
+  used = whole;
+  return Outcome::kFrame;
+}
+
+}  // namespace tether::mavlink

@@ -1,0 +1,50 @@
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include <tether/mavlink/frames.h>
+
+namespace tether::mavlink {
+namespace {
+
+using uav::Quat;
+using uav::Vec3;
+
+constexpr double kPi = std::numbers::pi;
+
+TEST(Frames, NorthEastDownIsEastNorthUp) {
+  EXPECT_EQ(ned_from_enu(Vec3{1.0, 2.0, 3.0}), (Vec3{2.0, 1.0, -3.0}));
+  EXPECT_EQ(enu_from_ned(ned_from_enu(Vec3{1.0, 2.0, 3.0})), (Vec3{1.0, 2.0, 3.0}));
+  EXPECT_EQ(frd_from_flu(Vec3{1.0, 2.0, 3.0}), (Vec3{1.0, -2.0, -3.0}));
+}
+
+TEST(Frames, YawIsClockwiseFromNorth) {
+  EXPECT_NEAR(ned_from_enu_yaw(0.0), kPi / 2.0, 1e-12);
+  EXPECT_NEAR(ned_from_enu_yaw(kPi / 2.0), 0.0, 1e-12);
+  EXPECT_NEAR(ned_from_enu_yaw(-kPi / 2.0), kPi, 1e-12);
+  for (const double yaw : {-3.0, -1.0, 0.3, 2.9})
+    EXPECT_NEAR(enu_from_ned_yaw(ned_from_enu_yaw(yaw)), yaw, 1e-12);
+}
+
+// A vector of the body has the same direction in the world, whichever frames it is written in.
+TEST(Frames, AttitudesTurnVectorsAlike) {
+  for (const double roll : {-0.7, 0.0, 0.4})
+    for (const double pitch : {-0.5, 0.0, 1.2})
+      for (const double yaw : {-3.0, 0.0, 1.0}) {
+        const Quat q_WB = uav::from_rpy(roll, pitch, yaw);
+        const Quat q_NED = ned_from_enu(q_WB);
+        const Vec3 v_flu{0.3, -1.1, 0.7};
+        const Vec3 expected = ned_from_enu(rotate(q_WB, v_flu));
+        const Vec3 got = rotate(q_NED, frd_from_flu(v_flu));
+        EXPECT_LT(norm(expected - got), 1e-12);
+        EXPECT_LT(norm(rotate(enu_from_ned(q_NED), v_flu) - rotate(q_WB, v_flu)), 1e-12);
+      }
+}
+
+TEST(Frames, AnUprightVehicleThatHeadsNorthIsTheIdentity) {
+  const Quat q = ned_from_enu(uav::from_rpy(0.0, 0.0, kPi / 2.0));
+  EXPECT_NEAR(q.w, 1.0, 1e-12);
+}
+
+}  // namespace
+}  // namespace tether::mavlink
