@@ -27,6 +27,7 @@ Verdict audit(const record::Record& record) {
   check_motion(record, report);
   check_contacts(record, report);
   check_radio(record, grid, report);
+  check_autopilot(record, report);
   check_channel(record, grid, report);
   check_battery(record, report);
   check_stamps(record, report);

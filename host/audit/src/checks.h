@@ -43,6 +43,11 @@ void check_commands(const record::Record& record, const Boundaries& grid, Report
 /// none is received late or out of order.
 void check_radio(const record::Record& record, const Boundaries& grid, Report& report);
 
+/// Messages between flight controllers and their SUTs. Rules 1 and 2: each arrives when the line
+/// has brought it, and the controller takes it at its first step from there on. Rule 3: in order,
+/// and none is lost but where there was no room.
+void check_autopilot(const record::Record& record, Report& report);
+
 /// Rule 0: what became of each message follows from the settings of the radio, the positions of the
 /// UAVs and the draws. Only if the header has the settings.
 void check_channel(const record::Record& record, const Boundaries& grid, Report& report);

@@ -55,6 +55,8 @@ std::map<std::string, std::uint64_t> count_topics(const record::Record& record) 
   };
   counts["/interactions"] += record.interactions.size();
   counts["/radio"] += record.radio.size();
+  for (const auto& [at, order, m] : record.autopilot)
+    count("/autopilot", m.uav, std::string(m.direction()), m.name.empty() ? "unknown" : m.name);
   const auto count_all = [&](const char* prefix, const auto& messages) {
     for (const auto& entry : messages) count(prefix, entry.message.uav);
   };

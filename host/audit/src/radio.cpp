@@ -16,6 +16,16 @@ using Entry = record::Logged<record::Interaction>;
 using Fate = record::Logged<record::RadioMessage>;
 using record::RadioMessage;
 
+constexpr const char* kAutopilot = "autopilot";  // as senders of SUTs see it
+
+/// A message that a SUT can receive.
+struct Inboxed {
+  std::string from;
+  std::uint64_t sequence = 0;
+  SimTime at;
+  std::size_t index = 0;  // of its sender: the order at one instant
+};
+
 const std::set<std::string> kOutcomes = {"delivered",   "noise",      "collision",
                                          "half_duplex", "queue_full", "too_long",
                                          "inbox_full",  "waiting",    "dropped"};
@@ -45,6 +55,8 @@ class RadioCheck {
       check_arrival(fate);
       fated_.insert({m.uav, m.sequence});
     }
+    for (const auto& entry : record_.autopilot)
+      if (entry.message.to_controller) fated_.insert({entry.message.uav, entry.message.sequence});
     if (!record_.footer) return;
     for (const auto& [key, entry] : sends_)
       if (!fated_.contains(key)) report_.add(0, *entry, "message without a fate");
@@ -52,10 +64,15 @@ class RadioCheck {
 
   void check_receives() {
     for (const auto& [uav, row] : rows_of(record_)) {
-      std::deque<const Fate*> inbox;
-      for (const Fate& fate : record_.radio)
-        if (fate.message.to == uav && fate.message.outcome == record::kDelivered)
-          inbox.push_back(&fate);
+      std::deque<Inboxed> inbox;
+      for (const auto& [at, order, m] : record_.autopilot)
+        if (m.uav == uav && !m.to_controller && m.part == 0 && m.outcome == record::kDelivered)
+          inbox.push_back({kAutopilot, m.sequence, m.at, indices_[uav]});
+      for (const auto& [at, order, m] : record_.radio)
+        if (m.to == uav && m.outcome == record::kDelivered)
+          inbox.push_back({m.uav, m.sequence, m.at, indices_[m.uav]});
+      std::ranges::stable_sort(inbox, {},
+                               [](const Inboxed& m) { return std::pair(m.at, m.index); });
       for (const Entry* entry : row.interactions)
         if (entry->message.kind == record::kReceive) check_receive(*entry, *row.info, inbox);
     }
@@ -98,42 +115,40 @@ class RadioCheck {
     last_arrival_ = std::max(last_arrival_, m.at);
   }
 
-  void check_receive(const Entry& entry, const record::SutInfo& info,
-                     std::deque<const Fate*>& inbox) {
+  void check_receive(const Entry& entry, const record::SutInfo& info, std::deque<Inboxed>& inbox) {
     const record::Interaction& m = entry.message;
     if (!m.receive_until) return report_.add(0, entry, "receive without its end");
     if (!m.received) return check_timeout(entry, inbox);
-    const auto found = std::ranges::find_if(inbox, [&](const Fate* fate) {
-      return fate->message.uav == m.received->from &&
-             fate->message.sequence == m.received->sequence;
+    const auto found = std::ranges::find_if(inbox, [&](const Inboxed& message) {
+      return message.from == m.received->from && message.sequence == m.received->sequence;
     });
     if (found == inbox.end())
       return report_.add(1, entry, "received message {} of \"{}\", which has not arrived",
                          m.received->sequence, m.received->from);
-    const Fate& fate = **found;
+    const SimTime arrived_at = found->at;
     if (found != inbox.begin() && !info.concurrent)
       report_.add(3, entry, "received message {} of \"{}\" before others that arrived earlier",
                   m.received->sequence, m.received->from);
     inbox.erase(found);
-    const Wide due = std::max(wide(m.request_at), wide(fate.message.at));
-    if (m.received->arrived_at != fate.message.at)
+    const Wide due = std::max(wide(m.request_at), wide(arrived_at));
+    if (m.received->arrived_at != arrived_at)
       report_.add(1, entry, "received a message that arrived at {}, at {} in its own entry",
-                  ns(m.received->arrived_at), ns(fate.message.at));
+                  ns(m.received->arrived_at), ns(arrived_at));
     if (wide(m.reply_at) != due)
       report_.add(wide(m.reply_at) < due ? 1 : 3, entry,
                   "received at ET {} what arrived at {}; requested at ET {}", ns(m.reply_at),
-                  ns(fate.message.at), ns(m.request_at));
+                  ns(arrived_at), ns(m.request_at));
   }
 
   // Of a message at the very instant of the timeout, the order of UAVs decides.
-  void check_timeout(const Entry& entry, const std::deque<const Fate*>& inbox) {
+  void check_timeout(const Entry& entry, const std::deque<Inboxed>& inbox) {
     const record::Interaction& m = entry.message;
     if (m.reply_at != *m.receive_until)
       report_.add(7, entry, "received nothing at ET {} instead of ET {}", ns(m.reply_at),
                   ns(*m.receive_until));
     if (inbox.empty()) return;
-    const RadioMessage& first = inbox.front()->message;
-    const bool later = indices_[first.uav] > indices_[m.uav];
+    const Inboxed& first = inbox.front();
+    const bool later = first.index > indices_[m.uav];
     if (wide(first.at) + (later ? 1 : 0) <= wide(m.reply_at))
       report_.add(3, entry, "received nothing at ET {}, but a message had arrived at {}",
                   ns(m.reply_at), ns(first.at));

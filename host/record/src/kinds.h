@@ -29,6 +29,7 @@ inline const std::tuple kKinds = {
     KindInfo<Contact>{kContactSchema, "/contacts", &Record::contacts},
     KindInfo<Battery>{kBatterySchema, "/battery", &Record::batteries},
     KindInfo<RadioMessage>{kRadioMessageSchema, "/radio", &Record::radio},
+    KindInfo<AutopilotMessage>{kAutopilotMessageSchema, "/autopilot", &Record::autopilot},
     KindInfo<Image>{kCompressedImageSchema, "/images", &Record::images},
     KindInfo<RawImage>{kRawImageSchema, "/depth", &Record::raw_images},
 };

@@ -99,6 +99,12 @@ class McapRecorder final : public Recorder {
     std::string_view topic = std::get<KindInfo<Kind>>(kKinds).topic, uav, sensor;
     if constexpr (!is_of_all) uav = message.uav;
     if constexpr (kIsImage<Kind>) sensor = message.sensor;
+    std::string part;
+    if constexpr (std::is_same_v<Kind, AutopilotMessage>) {
+      part = message.direction();
+      part += '/' + (message.name.empty() ? "unknown" : message.name);
+      sensor = part;
+    }
     if constexpr (std::is_same_v<Kind, RawImage>)
       if (!std::holds_alternative<std::vector<float>>(message.pixels))
         std::tie(channels, topic) = std::pair(&labels_, "/labels");

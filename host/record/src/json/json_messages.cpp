@@ -102,6 +102,13 @@ void append_json(std::string& out, const Annotation& message) {
   writer.close();
 }
 
+void append_json(std::string& out, const AutopilotMessage& message) {
+  MemberWriter writer(out);
+  members(writer, message);
+  writer.json().raw("fields", is_json_object(message.fields) ? message.fields : "{}");
+  writer.close();
+}
+
 void append_json(std::string& out, const Image& message) {
   JsonObject object(out);
   timestamp(object, message.at);
@@ -158,6 +165,14 @@ Annotation from_json<Annotation>(std::string_view text) {
   const Json json = parse_object(text);
   Annotation message = read_members<Annotation>(json);
   message.json = member(json, "data").dump();
+  return message;
+}
+
+template <>
+AutopilotMessage from_json<AutopilotMessage>(std::string_view text) {
+  const Json json = parse_object(text);
+  AutopilotMessage message = read_members<AutopilotMessage>(json);
+  message.fields = member(json, "fields").dump();
   return message;
 }
 

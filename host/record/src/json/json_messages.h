@@ -14,6 +14,7 @@ void append_json(std::string& out, const Kind& message, JsonParts parts = {}) {
   append_members(out, message, parts);
 }
 void append_json(std::string& out, const Annotation& message);
+void append_json(std::string& out, const AutopilotMessage& message);
 /// As foxglove.CompressedImage, with more members.
 void append_json(std::string& out, const Image& message);
 /// As foxglove.RawImage, with more members.
@@ -28,6 +29,8 @@ Kind from_json(std::string_view text) {
 }
 template <>
 Annotation from_json<Annotation>(std::string_view text);
+template <>
+AutopilotMessage from_json<AutopilotMessage>(std::string_view text);
 template <>
 Image from_json<Image>(std::string_view text);
 template <>

@@ -183,6 +183,20 @@ void members(auto& io, Maybe<RadioMessage> auto& m) {
   io.optional("snr_db", m.snr_db);
 }
 
+/// All but "fields".
+void members(auto& io, Maybe<AutopilotMessage> auto& m) {
+  io("uav", m.uav);
+  io.flag("to_controller", m.to_controller);
+  io("sequence", m.sequence);
+  if (io.has("part", m.part > 0)) io("part", m.part);
+  io("bytes", m.bytes);
+  io("sent_at_ns", m.sent_at);
+  io("at_ns", m.at);
+  io.optional("acted_at_ns", m.acted_at);
+  io("outcome", m.outcome);
+  io("name", m.name);
+}
+
 void members(auto& io, Maybe<Battery> auto& m) {
   io("uav", m.uav);
   io("at_ns", m.at);
@@ -259,6 +273,14 @@ void members(auto& io, Maybe<BuildPart> auto& m) {
   io("value", m.value);
 }
 
+void members(auto& io, Maybe<ControllerInfo> auto& m) {
+  io("name", m.name);
+  io("estimate", m.estimate);
+  io("period_ns", m.period);
+  io("link_baud", m.link_baud);
+  io("link_latency_ns", m.link_latency);
+}
+
 void members(auto& io, Maybe<SutInfo> auto& m) {
   constexpr int kMostCores = 1024;
   io("uav", m.uav);
@@ -271,6 +293,9 @@ void members(auto& io, Maybe<SutInfo> auto& m) {
     io("setpoint_timeout_ns", m.setpoint_timeout);
     io("on_setpoint_loss", m.on_setpoint_loss);
   }
+  if (io.has("controller", m.controller.has_value()))
+    io.object("controller",
+              [&](auto& controller) { members(controller, io.value_of(m.controller)); });
   io.flag("concurrent", m.concurrent);
   if (io.has("cores", m.cores > 0)) io.within("cores", m.cores, 1, kMostCores);
   if (io.has("max_acceleration_m_s2", m.max_acceleration_m_s2 > 0.0))

@@ -258,6 +258,26 @@ const Schema kRadioMessageSchema{"tether.RadioMessage", R"json({
   "required": ["uav", "sequence", "to", "bytes", "sent_at_ns", "at_ns", "outcome"]
 })json"};
 
+const Schema kAutopilotMessageSchema{"tether.AutopilotMessage", R"json({
+  "title": "tether.AutopilotMessage",
+  "description": "A message between a flight controller and its SUT. Log time: ST when it was taken.",
+  "type": "object",
+  "properties": {
+    "uav": {"type": "string"},
+    "to_controller": {"type": "boolean"},
+    "sequence": {"type": "integer", "minimum": 1},
+    "part": {"type": "integer", "minimum": 0, "description": "of several that were sent as one"},
+    "bytes": {"type": "integer", "minimum": 0, "description": "of all that was sent as one"},
+    "sent_at_ns": {"type": "integer", "description": "ET of the SUT, or ST of the controller"},
+    "at_ns": {"type": "integer", "description": "when it arrived, or was lost"},
+    "acted_at_ns": {"type": "integer", "description": "step of the controller that took it"},
+    "outcome": {"type": "string", "enum": ["delivered", "queue_full", "inbox_full", "waiting"]},
+    "name": {"type": "string", "description": "of the MAVLink message; empty: not known"},
+    "fields": {"type": "object", "description": "in the units of the MAVLink message"}
+  },
+  "required": ["uav", "sequence", "bytes", "sent_at_ns", "at_ns", "outcome", "name", "fields"]
+})json"};
+
 const Schema kBatterySchema{"tether.Battery", R"json({
   "title": "tether.Battery",
   "description": "The battery of a UAV, and the energy spent since ST 0, by cause.",

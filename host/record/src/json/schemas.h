@@ -20,6 +20,7 @@ extern const Schema kStopSchema;
 extern const Schema kContactSchema;
 extern const Schema kBatterySchema;
 extern const Schema kRadioMessageSchema;
+extern const Schema kAutopilotMessageSchema;
 extern const Schema kMarginSchema;
 /// Well-known schemas of Foxglove, by their names.
 extern const Schema kCompressedImageSchema;

@@ -68,7 +68,7 @@ struct Welcome {
   ExecTime start;             ///< the SUT's ET begins here
   /// With the clock "replayed": what each stage takes until the first call.
   std::vector<StageTime> computing{};
-  std::vector<std::string> peers{};  ///< the other UAVs, to which messages can be sent
+  std::vector<std::string> peers{};  ///< to which messages can be sent: other UAVs, kAutopilot
   double real_time_factor = 1.0;     ///< in free running: ST per WT at most
 };
 
@@ -116,11 +116,16 @@ struct Finish {
   std::string details;  ///< JSON object: results of the task; may be empty
 };
 
+/// The flight controller of a SUT's own UAV, as a sender and receiver of messages. No UAV of a run
+/// with flight controllers has this name.
+inline constexpr const char* kAutopilot = "autopilot";
+
 /// Longest message by radio [bytes].
 inline constexpr std::size_t kMaxRadioBytes = 64u << 10;
-/// Send a message by radio. The reply is due at once, and does not tell whether it will arrive.
+/// Send a message by radio, or to the flight controller. The reply is due at once, and does not
+/// tell whether it will arrive.
 struct SendMessage {
-  std::string to;  ///< a UAV; empty: all others
+  std::string to;  ///< a UAV, or kAutopilot; empty: all other UAVs
   std::vector<std::uint8_t> bytes;
 };
 /// Wait for the next message, until `timeout` after the request at most.
@@ -146,9 +151,9 @@ struct Request {
   std::vector<StageTime> stages{};
 };
 
-/// A message that has arrived by radio. Its sender sent it at ET `sent_at`.
+/// A message that has arrived. Its sender sent it at ET `sent_at`.
 struct RadioMessage {
-  std::string from;  ///< a UAV
+  std::string from;  ///< a UAV, or kAutopilot
   SimTime sent_at;
   SimTime arrived_at;
   std::vector<std::uint8_t> bytes;

@@ -117,6 +117,16 @@ struct BuildPart {
 
   friend bool operator==(const BuildPart&, const BuildPart&) = default;
 };
+/// The flight controller of a UAV, and its link to the SUT.
+struct ControllerInfo {
+  std::string name;
+  std::string estimate;      ///< what it flies on: a sensor, or "truth"
+  Duration period{0};        ///< of its steps; > 0
+  double link_baud = 0.0;    ///< 10 bits for each byte; 0: bytes take no time
+  Duration link_latency{0};  ///< each way
+
+  friend bool operator==(const ControllerInfo&, const ControllerInfo&) = default;
+};
 struct SutInfo {
   std::string uav;
   std::string sut;  ///< name and version that the SUT reported
@@ -148,6 +158,7 @@ struct SutInfo {
   std::optional<Duration> max_command_latency{};  ///< none: it is constant
   Duration setpoint_timeout{0};                   ///< 0: there is none
   std::string on_setpoint_loss{};                 ///< with a timeout: "keep", "hover", …
+  std::optional<ControllerInfo> controller{};     ///< none: its commands are the vehicle's own
 };
 /// A computer whose cores several SUTs share. On a virtual one, while n compute, each gets min(1,
 /// cores / n) of a core; a core with pinned programs is shared by these only. On a real one, its

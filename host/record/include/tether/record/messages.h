@@ -26,9 +26,11 @@ inline constexpr std::string_view kSend = "send";
 inline constexpr std::string_view kReceive = "receive";
 inline constexpr std::string_view kBattery = "battery";
 
-/// Values of RadioMessage::outcome; others say why the message was lost.
+/// Values of the outcome of a message; others say why the message was lost.
 inline constexpr std::string_view kDelivered = "delivered";
 inline constexpr std::string_view kWaiting = "waiting";  ///< at the end of the run
+inline constexpr std::string_view kQueueFull = "queue_full";
+inline constexpr std::string_view kInboxFull = "inbox_full";
 
 /// Where an anchor is seen in an image: the first and last column and row of its visible pixels.
 struct SeenAnchor {
@@ -219,6 +221,26 @@ struct RadioMessage {
   friend bool operator==(const RadioMessage&, const RadioMessage&) = default;
 };
 
+/// A message between a UAV's flight controller and its SUT: written when the controller has taken
+/// it, when it has arrived at the SUT, when it was lost, and at the end of the run if neither is
+/// known. Topic /autopilot/<uav>/<"to" or "from">/<name>; log time = ST then.
+struct AutopilotMessage {
+  std::string uav;
+  bool to_controller = false;
+  std::uint64_t sequence =
+      0;                    ///< of the SUT's call of kind "send"; of the controller's: 1, 2, 3, …
+  std::uint64_t part = 0;   ///< of several messages that were sent as one: 0, 1, 2, …
+  std::uint64_t bytes = 0;  ///< of all that was sent as one
+  SimTime sent_at;          ///< ET of the call; a step of the controller + 1 ns
+  SimTime at;               ///< when it arrived or was lost
+  std::optional<SimTime> acted_at{};  ///< the step of the controller that has taken it
+  std::string outcome;                ///< "delivered", "queue_full", "inbox_full" or "waiting"
+  std::string name;    ///< of the MAVLink message; empty: the bytes are no message that is known
+  std::string fields;  ///< its values: a JSON object
+
+  std::string_view direction() const { return to_controller ? "to" : "from"; }
+};
+
 /// A message of the SUT for the record. Topic /task/<uav>; log time = ST when it arrived.
 struct Annotation {
   std::string uav;
@@ -251,7 +273,7 @@ struct RawImage {
 
 /// What a run logs between its header and its end.
 using Message = std::variant<Interaction, CommandEffect, GroundTruth, Annotation, Stop, Contact,
-                             Battery, RadioMessage, Image, RawImage>;
+                             Battery, RadioMessage, AutopilotMessage, Image, RawImage>;
 
 /// How close a UAV came to anything else: to the nearest collision shape, at the instants of the
 /// ground truth.

@@ -40,6 +40,7 @@ struct Record {
   std::vector<Logged<Contact>> contacts;
   std::vector<Logged<Battery>> batteries;
   std::vector<Logged<RadioMessage>> radio;
+  std::vector<Logged<AutopilotMessage>> autopilot;
   std::vector<Logged<Image>> images;
   std::vector<Logged<RawImage>> raw_images;
   std::optional<Footer> footer;
