@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <tether/base/time.h>
+#include <tether/uav/multirotor.h>
+#include <tether/uav/samples.h>
+#include <tether/uav/setpoint.h>
+
+/// The flight controller as a part of the simulated vehicle: it has a computer of its own, so its
+/// computing is free, and its clock is ST. The SUT is its companion, and talks MAVLink to it.
+namespace tether::autopilot {
+
+/// A message on the link to the companion, as a datagram.
+using Bytes = std::vector<std::uint8_t>;
+
+/// What the controller is given at one of its steps.
+struct Sensed {
+  SimTime at;
+  uav::BodyState truth;  ///< in W; to fly on if the vehicle has no state estimator
+  std::optional<uav::BatterySample> battery{};
+  /// A measurement of the vehicle's sensor of that kind at this instant; none: it has none.
+  std::function<std::optional<uav::Sample>(uav::SensorKind)> measure{};
+};
+
+/// What it does.
+struct Actions {
+  std::optional<uav::Setpoint> setpoint{};  ///< followed from now on; none: as before
+  std::vector<Bytes> sent;                  ///< to the companion, in this order
+};
+
+/// Called in the order of time. Deterministic: a function of what it was given. Not thread-safe.
+class FlightController {
+ public:
+  virtual ~FlightController() = default;
+  FlightController(const FlightController&) = delete;
+  FlightController& operator=(const FlightController&) = delete;
+
+  /// One step: `received` has what has arrived from the companion since the last one, in order.
+  /// Whatever it contains, nothing fails.
+  virtual Actions step(const Sensed& sensed, const std::vector<Bytes>& received) = 0;
+
+ protected:
+  FlightController() = default;
+};
+
+/// A message as the record has it.
+struct Decoded {
+  std::string name;         ///< of its type; empty: the bytes are no message of the table
+  std::string fields_json;  ///< a JSON object: its fields by name, arrays as arrays, NaN as null
+};
+/// The messages of a datagram. Bytes that are none make one entry without a name.
+std::vector<Decoded> decode(const Bytes& bytes);
+
+}  // namespace tether::autopilot

@@ -1,0 +1,292 @@
+#include "commander.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <tether/base/units.h>
+
+namespace tether::autopilot {
+namespace {
+
+// MAV_RESULT.
+constexpr int kAccepted = 0, kRejected = 1, kDenied = 2, kUnsupported = 3;
+
+// MAV_CMD.
+constexpr int kNavLoiter = 17, kNavReturn = 20, kNavLand = 21, kNavTakeoff = 22, kDoSetMode = 176,
+              kDoChangeSpeed = 178, kDoSetHome = 179, kDoReposition = 192, kMissionStart = 300,
+              kArmDisarm = 400, kGetHome = 410, kGetInterval = 510, kSetInterval = 511,
+              kRequestMessage = 512, kRequestCapabilities = 520;
+
+constexpr double kForce = 21196.0;  // parameter 2 of kArmDisarm: without checks
+
+struct BatteryLevel {
+  Parameter threshold;
+  int severity;
+  const char* text;
+};
+constexpr BatteryLevel kBatteryLevels[] = {
+    {Parameter::kBatLow, 4, "battery is low"},
+    {Parameter::kBatCritical, 2, "battery is critical"},
+    {Parameter::kBatEmergency, 2, "battery is almost empty: landing"},
+};
+
+}  // namespace
+
+bool Commander::takes(const mavlink::Message& message) {
+  return message.is("COMMAND_LONG") || message.is("COMMAND_INT") || message.is("SET_MODE");
+}
+
+void Commander::on_message(const mavlink::Frame& frame) {
+  const mavlink::Message& m = frame.message;
+  if (m.is("SET_MODE")) {
+    const auto custom = static_cast<unsigned>(m.integer("custom_mode"));
+    set_mode(static_cast<unsigned>(m.integer("base_mode")), custom >> 16 & 0xFFU, custom >> 24);
+    return;
+  }
+  Command command{.id = static_cast<int>(m.integer("command"))};
+  for (std::size_t i = 1; i <= 4; ++i) command.p[i] = m.number("param" + std::to_string(i));
+  if (m.is("COMMAND_INT")) {
+    command.p[5] = m.number("x") * 1e-7;
+    command.p[6] = m.number("y") * 1e-7;
+    command.p[7] = m.number("z");
+    const auto mav_frame = m.integer("frame");
+    command.is_place_relative = mav_frame == 3 || mav_frame == 6;
+  } else {
+    for (std::size_t i = 5; i <= 7; ++i) command.p[i] = m.number("param" + std::to_string(i));
+  }
+  const int result = run(command);
+  outbox_->send(mavlink::Message("COMMAND_ACK")
+                    .set("command", command.id)
+                    .set("result", result)
+                    .set("target_system", frame.from.system)
+                    .set("target_component", frame.from.component));
+}
+
+int Commander::run(const Command& command) {
+  const auto& p = command.p;
+  switch (command.id) {
+    case kArmDisarm:
+      return set_arming(command);
+    case kDoSetMode:
+      return set_mode(static_cast<unsigned>(p[1]), static_cast<unsigned>(p[2]),
+                      static_cast<unsigned>(p[3]));
+    case kNavTakeoff:
+      return take_off(command);
+    case kNavLand:
+      enter(Mode::kLand);
+      return kAccepted;
+    case kNavReturn:
+      enter(Mode::kReturn);
+      return kAccepted;
+    case kNavLoiter:
+      enter(Mode::kHold);
+      return kAccepted;
+    case kMissionStart:
+      return set_mode(1, info(Mode::kMission).main, info(Mode::kMission).sub);
+    case kDoReposition:
+      return reposition(command);
+    case kDoChangeSpeed:
+      if (!(p[2] > 0.0)) return kDenied;
+      navigator_->set_cruise(p[2]);
+      return kAccepted;
+    case kDoSetHome:
+      return set_home(command);
+    case kGetHome:
+      return telemetry_->request("HOME_POSITION") ? kAccepted : kDenied;
+    case kSetInterval:
+      return set_interval(command);
+    case kGetInterval:
+      return telemetry_->tell_interval(static_cast<std::uint32_t>(p[1]), *outbox_) ? kAccepted
+                                                                                   : kUnsupported;
+    case kRequestMessage: {
+      const auto* type = mavlink::find_type(static_cast<std::uint32_t>(p[1]));
+      return type != nullptr && telemetry_->request(type->name) ? kAccepted : kUnsupported;
+    }
+    case kRequestCapabilities:
+      return telemetry_->request("AUTOPILOT_VERSION") ? kAccepted : kDenied;
+    default:
+      return kUnsupported;
+  }
+}
+
+std::string Commander::why_not_arm() const {
+  if (!vehicle_->is_landed) return "it is in the air";
+  if (battery_state_ > 0) return "the battery is low";
+  return why_not(vehicle_->mode);
+}
+
+int Commander::set_arming(const Command& command) {
+  const bool is_forced = command.p[2] == kForce;
+  if (command.p[1] == 1.0) {
+    if (vehicle_->is_armed) return kAccepted;
+    if (const std::string why = why_not_arm(); !is_forced && !why.empty()) {
+      outbox_->say(2, "Arming denied: " + why);
+      return kRejected;
+    }
+    arm();
+    return kAccepted;
+  }
+  if (command.p[1] != 0.0) return kDenied;
+  if (!vehicle_->is_armed) return kAccepted;
+  if (!vehicle_->is_landed && !is_forced) {
+    outbox_->say(2, "Disarming denied: it is not landed");
+    return kRejected;
+  }
+  disarm("by command");
+  return kAccepted;
+}
+
+// Home is where it was armed.
+void Commander::arm() {
+  vehicle_->is_armed = true;
+  vehicle_->armed_at = vehicle_->now;
+  vehicle_->landed_at.reset();
+  vehicle_->home_W = vehicle_->estimate.p_WB;
+  vehicle_->home_yaw_W_rad = uav::yaw_rad(vehicle_->estimate.q_WB);
+  outbox_->say(6, "armed");
+  telemetry_->request("HOME_POSITION");
+  navigator_->begin(*vehicle_, *missions_);
+}
+
+void Commander::disarm(std::string_view why) {
+  vehicle_->is_armed = false;
+  vehicle_->is_failsafe = false;
+  outbox_->say(6, fmt::format("disarmed {}", why));
+  if (vehicle_->mode == Mode::kLand || vehicle_->mode == Mode::kReturn ||
+      vehicle_->mode == Mode::kTakeoff)
+    enter(Mode::kHold);
+}
+
+// Empty: it can be entered.
+std::string Commander::why_not(Mode mode) const {
+  if (mode == Mode::kOffboard && !offboard_->is_streaming(vehicle_->now))
+    return "OFFBOARD needs set-points at 2 Hz or more, for a second before";
+  if (mode == Mode::kMission && missions_->items().empty()) return "there is no mission";
+  return {};
+}
+
+int Commander::set_mode(unsigned base_mode, unsigned main, unsigned sub) {
+  constexpr unsigned kCustom = 1;
+  if ((base_mode & kCustom) == 0) return kDenied;
+  const auto mode = mode_of(main, main == info(Mode::kOffboard).main ? 0 : sub);
+  if (!mode) {
+    outbox_->say(2, fmt::format("mode {}.{} is not available", main, sub));
+    return kDenied;
+  }
+  if (const std::string why = why_not(*mode); !why.empty()) {
+    outbox_->say(2, fmt::format("{} denied: {}", info(*mode).name, why));
+    return kRejected;
+  }
+  enter(*mode);
+  return kAccepted;
+}
+
+void Commander::enter(Mode mode) {
+  vehicle_->mode = mode;
+  vehicle_->mode_since = vehicle_->now;
+  vehicle_->is_failsafe = false;
+  navigator_->begin(*vehicle_, *missions_);
+  telemetry_->request("HEARTBEAT");
+}
+
+double Commander::altitude_w(const Command& command) const {
+  if (!std::isfinite(command.p[7])) return command.p[7];
+  const double altitude_m =
+      command.p[7] +
+      (command.is_place_relative ? vehicle_->frame.geodetic(vehicle_->home_W).altitude_m : 0.0);
+  sim::Geodetic here = vehicle_->frame.geodetic(vehicle_->estimate.p_WB);
+  here.altitude_m = altitude_m;
+  return vehicle_->frame.point(here).z;
+}
+
+// As in PX4, an altitude that is not above the vehicle is replaced by that of the parameter.
+int Commander::take_off(const Command& command) {
+  if (!vehicle_->is_landed) return kRejected;
+  const double z_W = altitude_w(command);
+  if (std::isfinite(z_W) && z_W > vehicle_->estimate.p_WB.z) navigator_->take_off_to(z_W);
+  enter(Mode::kTakeoff);
+  return kAccepted;
+}
+
+int Commander::reposition(const Command& command) {
+  if (!vehicle_->is_armed || vehicle_->is_landed) return kRejected;
+  enter(Mode::kHold);
+  uav::Vec3 p_W = vehicle_->estimate.p_WB;
+  const double z_W = altitude_w(command);
+  if (std::isfinite(command.p[5]) && std::isfinite(command.p[6]) &&
+      (command.p[5] != 0.0 || command.p[6] != 0.0)) {
+    sim::Geodetic place = vehicle_->frame.geodetic(p_W);
+    place.latitude_deg = command.p[5];
+    place.longitude_deg = command.p[6];
+    p_W = vehicle_->frame.point(place);
+  }
+  if (std::isfinite(z_W)) p_W.z = z_W;
+  if (command.p[1] > 0.0) navigator_->set_cruise(command.p[1]);
+  navigator_->go_to(p_W, vehicle_->frame.yaw_from_ned(command.p[4]));
+  return kAccepted;
+}
+
+int Commander::set_interval(const Command& command) {
+  const auto* type = mavlink::find_type(static_cast<std::uint32_t>(command.p[1]));
+  if (type == nullptr) return kUnsupported;
+  return telemetry_->set_interval(type->name, command.p[2]) ? kAccepted : kUnsupported;
+}
+
+int Commander::set_home(const Command& command) {
+  if (command.p[1] == 1.0) {
+    vehicle_->home_W = vehicle_->estimate.p_WB;
+  } else {
+    if (!std::isfinite(command.p[5] + command.p[6] + command.p[7])) return kDenied;
+    vehicle_->home_W = vehicle_->frame.point({command.p[5], command.p[6], command.p[7]});
+  }
+  telemetry_->request("HOME_POSITION");
+  return kAccepted;
+}
+
+void Commander::step() {
+  if (const auto next = navigator_->next_mode()) enter(*next);
+  watch_set_points();
+  watch_battery();
+  watch_ground();
+}
+
+void Commander::watch_set_points() {
+  if (vehicle_->mode != Mode::kOffboard || !vehicle_->is_armed ||
+      !offboard_->is_lost(vehicle_->now, vehicle_->time_parameter(Parameter::kOffboardLoss_s)))
+    return;
+  const int action = static_cast<int>(vehicle_->parameter(Parameter::kOffboardLossAction));
+  const Mode mode = action == 3 ? Mode::kReturn : action == 4 ? Mode::kLand : Mode::kHold;
+  enter(mode);
+  vehicle_->is_failsafe = true;
+  outbox_->say(2, fmt::format("no set-points: {}", info(mode).name));
+}
+
+void Commander::watch_battery() {
+  if (!vehicle_->battery) return;
+  int state = 0;
+  for (const BatteryLevel& level : kBatteryLevels)
+    state += vehicle_->battery->charge < vehicle_->parameter(level.threshold) ? 1 : 0;
+  if (state <= battery_state_) return;
+  battery_state_ = state;
+  const BatteryLevel& level = kBatteryLevels[state - 1];
+  outbox_->say(level.severity, level.text);
+  const int action = static_cast<int>(vehicle_->parameter(Parameter::kLowBatteryAction));
+  if (!vehicle_->is_armed || vehicle_->is_landed || action == 0) return;
+  if (state == 2) enter(action == 1 ? Mode::kReturn : Mode::kLand);
+  if (state == 3) enter(Mode::kLand);
+  if (state >= 2) vehicle_->is_failsafe = true;
+}
+
+void Commander::watch_ground() {
+  if (!vehicle_->is_armed || !vehicle_->is_landed) return;
+  const bool has_landed = vehicle_->landed_at.has_value();
+  const Parameter limit = has_landed ? Parameter::kDisarmLanded_s : Parameter::kDisarmPreflight_s;
+  if (vehicle_->parameter(limit) < 0.0) return;
+  const SimTime since = has_landed ? *vehicle_->landed_at : vehicle_->armed_at;
+  if (vehicle_->now - since >= vehicle_->time_parameter(limit))
+    disarm(has_landed ? "after landing" : "because it did not take off");
+}
+
+}  // namespace tether::autopilot

@@ -1,0 +1,69 @@
+#pragma once
+
+#include "missions.h"
+#include "navigator.h"
+#include "offboard.h"
+#include "outbox.h"
+#include "telemetry.h"
+#include "vehicle.h"
+
+#include <optional>
+#include <string>
+
+#include <tether/mavlink/frame.h>
+
+namespace tether::autopilot {
+
+/// Arming, modes, commands and failsafes.
+class Commander {
+ public:
+  Commander(Vehicle& vehicle, Navigator& navigator, Missions& missions, Offboard& offboard,
+            Telemetry& telemetry, Outbox& outbox)
+      : vehicle_(&vehicle),
+        navigator_(&navigator),
+        missions_(&missions),
+        offboard_(&offboard),
+        telemetry_(&telemetry),
+        outbox_(&outbox) {}
+
+  /// COMMAND_LONG, COMMAND_INT and SET_MODE.
+  static bool takes(const mavlink::Message& message);
+  void on_message(const mavlink::Frame& frame);
+  /// Whatever time brings: lost set-points, an empty battery, disarming.
+  void step();
+  void arm();
+  void enter(Mode mode);
+
+ private:
+  /// A command, from either message. `p`: its parameters 1 to 7, of which 5 and 6 are in degrees
+  /// or metres.
+  struct Command {
+    int id = 0;
+    double p[8] = {};
+    bool is_place_relative = false;  // its altitude is over home
+  };
+  int run(const Command& command);
+  int set_arming(const Command& command);
+  int set_mode(unsigned base_mode, unsigned main, unsigned sub);
+  int take_off(const Command& command);
+  int reposition(const Command& command);
+  int set_interval(const Command& command);
+  int set_home(const Command& command);
+  std::string why_not_arm() const;
+  std::string why_not(Mode mode) const;
+  void disarm(std::string_view why);
+  void watch_set_points();
+  void watch_battery();
+  void watch_ground();
+  double altitude_w(const Command& command) const;
+
+  Vehicle* vehicle_;
+  Navigator* navigator_;
+  Missions* missions_;
+  Offboard* offboard_;
+  Telemetry* telemetry_;
+  Outbox* outbox_;
+  int battery_state_ = 0;  // 0 good, 1 low, 2 critical, 3 emergency
+};
+
+}  // namespace tether::autopilot

@@ -1,0 +1,48 @@
+#pragma once
+
+#include "missions.h"
+#include "outbox.h"
+#include "vehicle.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include <tether/autopilot/flight_controller.h>
+#include <tether/uav/setpoint.h>
+
+namespace tether::autopilot {
+
+/// What a message of telemetry is made of.
+struct TelemetrySource {
+  const Vehicle& vehicle;
+  const Sensed& sensed;
+  const uav::Setpoint& setpoint;  // what the vehicle follows
+  const Missions& missions;
+};
+
+/// The streams: which messages are sent how often.
+class Telemetry {
+ public:
+  Telemetry();
+
+  /// What is due at this step.
+  void step(const TelemetrySource& source, Outbox& outbox);
+  /// Sends it once, at the next step. False: it is no stream.
+  bool request(std::string_view name);
+  /// As MAV_CMD_SET_MESSAGE_INTERVAL: −1: never, 0: as at first. False: it is no stream.
+  bool set_interval(std::string_view name, double interval_us);
+  bool tell_interval(std::uint32_t id, Outbox& outbox) const;
+
+ private:
+  struct Stream {
+    std::optional<Duration> interval;  // none: only on request
+    SimTime next{};
+    bool is_requested = false;
+  };
+  std::vector<Stream> streams_;  // in the order of the table
+};
+
+}  // namespace tether::autopilot
