@@ -148,6 +148,7 @@ Coordinator::Impl::Impl(sim::Simulator& simulator, record::Recorder& recorder, R
                make_samplers(simulator, options_), losses_of(simulator, options_)),
       sessions_(make_sessions(simulator, options_)),
       radio_(options_.radio, options_.seed, names_of(world()), log_),
+      controllers_(options_.uavs, names_of(world()), log_),
       time_limit_(simulator.grid().ceil(SimTime(options_.time_limit))),
       started_(host_clock_()),
       flushed_(started_),
@@ -182,6 +183,12 @@ void Coordinator::Impl::turn() {
   look_at_suts();
 }
 
+std::vector<std::string> Coordinator::Impl::peers_of(const Session& session) const {
+  std::vector<std::string> peers = radio_.peers_of(session.uav);
+  if (controllers_.has(session.uav)) peers.emplace_back(link::kAutopilot);
+  return peers;
+}
+
 // Called when every SUT has joined. ST and every ET begin at 0.
 void Coordinator::Impl::start() {
   stepper_.reset(options_.seed);
@@ -205,7 +212,7 @@ void Coordinator::Impl::start() {
                                 .free_running = is_free,
                                 .start = ExecTime{},
                                 .computing = session.time_given(),
-                                .peers = radio_.peers_of(session.uav),
+                                .peers = peers_of(session),
                                 .real_time_factor = is_free ? options_.real_time_factor : 1.0});
 }
 
@@ -239,7 +246,7 @@ void Coordinator::Impl::watch_batteries() {
 // How far ST may advance in this turn.
 SimTime Coordinator::Impl::next_stop() const {
   return std::min({times_.limit(), time_limit_, fallen_at_.value_or(SimTime::max()),
-                   stepper_.next_due(), next_radio(), st() + kStepsPerTurn * grid().dt()});
+                   stepper_.next_due(), next_event_step(), st() + kStepsPerTurn * grid().dt()});
 }
 
 // How much of that the pace allows.
@@ -371,7 +378,10 @@ RunStatus Coordinator::Impl::status(WallTime now) const {
 // Notifies the SUTs that are still connected, then completes the record.
 RunReport Coordinator::Impl::close_run() {
   if (running_ && ended_->how != RunEnd::kSimulatorLost) stepper_.log_contacts();
-  if (running_) radio_.log_in_transit(st(), grid());
+  if (running_) {
+    radio_.log_in_transit(st(), grid());
+    controllers_.log_in_transit(st());
+  }
   record::Footer& footer = log_.footer();
   RunReport report{
       .end = ended_->how,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "controller_links.h"
 #include "looks.h"
 #include "radio_traffic.h"
 #include "run_log.h"
@@ -19,13 +20,14 @@
 namespace tether::coordinator {
 
 /// The loop of a run: receives messages of the SUTs (incoming.cpp), sends replies (outgoing.cpp),
-/// passes messages between UAVs (radio.cpp), and advances ST in between (coordinator.cpp). The
-/// decisions are made by its parts:
+/// passes messages between UAVs and to flight controllers (events.cpp), and advances ST in between
+/// (coordinator.cpp). The decisions are made by its parts:
 ///
 ///     validator    whether a message of a SUT is allowed
 ///     Timelines    when a SUT sent a request, which replies are held until when, and how far ST
 ///                  may advance
 ///     RadioTraffic when a message between UAVs arrives, or why it is lost
+///     ControllerLinks  when a flight controller steps, and its messages arrive
 ///     Stepper      what is due at each boundary; its Samplers: what sensors sample, and when
 ///     Watchdog     whether the run takes too long, and who is blocked on whom
 ///     ThreadLooks  what the threads of SUTs do meanwhile
@@ -46,6 +48,7 @@ class Coordinator::Impl {
   // The loop.
   void turn();
   void start();
+  std::vector<std::string> peers_of(const Session& session) const;
   record::Header make_header() const;
   bool advance();
   SimTime next_stop() const;
@@ -80,9 +83,11 @@ class Coordinator::Impl {
   Session* find(link::PeerId peer);
   void refuse(link::PeerId peer, link::Refusal::Reason reason, const std::string& message);
 
-  // Radio.
-  SimTime next_radio() const;
-  void settle_radio();
+  // Events.
+  std::optional<sync::SutTime> next_event() const;
+  SimTime next_event_step() const;
+  void settle_events();
+  void handle_radio();
   void deliver(Session& session, ExecTime arrived_at);
   void expel(Session& session, const Fault& fault);
 
@@ -112,6 +117,7 @@ class Coordinator::Impl {
   std::vector<Session> sessions_;               // one per UAV, in the world's order
   std::map<link::PeerId, std::size_t> joined_;  // index of the session of each SUT
   RadioTraffic radio_;
+  ControllerLinks controllers_;
   SimTime time_limit_;  // a step boundary
   std::optional<sync::RealTimeLimit> pace_;
 

@@ -4,29 +4,42 @@
 
 #include <fmt/format.h>
 
-/// Events of the radio in the run: each one is handled in the order of (time, UAV), when ST is at
-/// its step, and no SUT can send an earlier one any more. A message that arrives for an open
-/// receive makes its reply due at that instant.
+/// Events of the radio and of flight controllers: each one is handled in the order of (time, UAV),
+/// when ST is at its step, and no SUT can send an earlier one any more. A message that arrives for
+/// an open receive makes its reply due at that instant.
 namespace tether::coordinator {
 
+std::optional<sync::SutTime> Coordinator::Impl::next_event() const {
+  const auto radio = radio_.next(), controller = controllers_.next();
+  return !controller || (radio && *radio < *controller) ? radio : controller;
+}
+
 // How far ST may advance before something is due here.
-SimTime Coordinator::Impl::next_radio() const {
-  const auto next = radio_.next();
+SimTime Coordinator::Impl::next_event_step() const {
+  const auto next = next_event();
   return next ? std::max(grid().floor(same_instant(next->at)), st()) : SimTime::max();
 }
 
-void Coordinator::Impl::settle_radio() {
-  while (const auto next = radio_.next()) {
+void Coordinator::Impl::settle_events() {
+  while (const auto next = next_event()) {
     if (grid().floor(same_instant(next->at)) > st()) return;
     const auto earliest = times_.earliest();
     if (earliest && *next > *earliest) return;
-    for (const radio::Arrival& arrival :
-         radio_.handle_next([this](std::size_t a, std::size_t b) { return stepper_.link(a, b); })) {
-      const bool has_arrived = radio_.take(st(), arrival);
-      Session& sender = sessions_[arrival.message.from];
-      if (const auto flood = radio_.flood_of(sender.uav)) expel(sender, *flood);
-      if (has_arrived) deliver(sessions_[arrival.to], same_instant(arrival.at));
+    if (next != controllers_.next()) {
+      handle_radio();
+    } else if (const auto arrival = controllers_.handle_next(stepper_, radio_)) {
+      deliver(sessions_[arrival->uav], same_instant(arrival->at));
     }
+  }
+}
+
+void Coordinator::Impl::handle_radio() {
+  for (const radio::Arrival& arrival :
+       radio_.handle_next([this](std::size_t a, std::size_t b) { return stepper_.link(a, b); })) {
+    const bool has_arrived = radio_.take(st(), arrival);
+    Session& sender = sessions_[arrival.message.from];
+    if (const auto flood = radio_.flood_of(sender.uav)) expel(sender, *flood);
+    if (has_arrived) deliver(sessions_[arrival.to], same_instant(arrival.at));
   }
 }
 

@@ -143,6 +143,12 @@ record::Header Coordinator::Impl::make_header() const {
       sut.setpoint_timeout = loss->timeout;
       sut.on_setpoint_loss = name(loss->action);
     }
+    if (const auto& controller = options_.uavs[session.uav].controller)
+      sut.controller = {.name = controller->name,
+                        .estimate = controller->estimate,
+                        .period = controller->period,
+                        .link_baud = controller->link_baud,
+                        .link_latency = controller->link_latency};
     if (time_of(session).facts().shares_board) {
       header.suts.back().board = options_.boards[*options_.uavs[session.uav].board].name;
       header.suts.back().pinned_core = options_.uavs[session.uav].pinned_core;

@@ -170,6 +170,7 @@ Standing Coordinator::Impl::standing(const Session& session) const {
           .sensors = stepper_.sampler(session.uav),
           .has_battery = stepper_.has_battery(session.uav),
           .limits = session.limits,
+          .has_controller = controllers_.has(session.uav),
           .plausibility = time.plausibility(),
           .clock_cores = session.hello.clock.adds_up_cores() ? cores : 0};
 }
@@ -196,7 +197,7 @@ void Coordinator::Impl::on_request(Session& session, const link::Request& reques
 // Handles the messages whose instant is known only now.
 bool Coordinator::Impl::settle_boards() {
   const bool has_changed =
-      times_.settle([this] { return radio_.next(); },
+      times_.settle([this] { return next_event(); },
                     [this](std::size_t uav, ExecTime from, ExecTime to, double cores) {
                       stepper_.computes(uav, same_instant(from), same_instant(to), cores);
                     },
@@ -236,7 +237,7 @@ void Coordinator::Impl::begin(Sent sent) {
   PendingInteraction pending = arrive(session, std::move(sent), time_of(session));
   record::Interaction& entry = pending.entry;
   stepper_.ends_computing(session.uav, same_instant(entry.request_at));
-  entry.reply_at = plan(session, pending, stepper_, radio_);
+  entry.reply_at = plan(session, pending, {stepper_, radio_, controllers_});
   if (const auto due = time_of(session).hold(entry)) server_->send(session.peer, *due);
   session.open.push_back(std::move(pending));
 }

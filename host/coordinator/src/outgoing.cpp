@@ -31,7 +31,7 @@ void Coordinator::Impl::release_ready() {
   // Other threads draw ahead: while one picture is drawn for its reply, those of other SUTs, and
   // while the SUTs compute, what they will read.
   if (sessions_.size() > 1) stepper_.announce();
-  while (const auto grant = times_.release(st(), radio_.next())) {
+  while (const auto grant = times_.release(st(), next_event())) {
     Session& session = sessions_[grant->sut];
     std::size_t i = 0;
     while (session.open[i].entry.sequence != grant->call) ++i;
@@ -45,7 +45,7 @@ void Coordinator::Impl::release_ready() {
 // A message can end the wait of a program that shares a board, and so change when others have done
 // their work; and what these send is known only then.
 void Coordinator::Impl::settle() {
-  do settle_radio();
+  do settle_events();
   while (settle_boards());
 }
 

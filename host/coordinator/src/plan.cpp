@@ -104,8 +104,8 @@ PendingInteraction arrive(const Session& session, Sent sent, Timeline& time) {
   return pending;
 }
 
-ExecTime plan(Session& session, PendingInteraction& pending, Stepper& stepper,
-              RadioTraffic& radio) {
+ExecTime plan(Session& session, PendingInteraction& pending, const Parts& parts) {
+  auto& [stepper, radio, controllers] = parts;
   const link::Request& request = pending.request;
   record::Interaction& entry = pending.entry;
   if (const auto* read = std::get_if<link::ReadSensor>(&request.body))
@@ -120,7 +120,11 @@ ExecTime plan(Session& session, PendingInteraction& pending, Stepper& stepper,
     return std::max(entry.request_at, *entry.sleep_until);
   }
   if (const auto* send = std::get_if<link::SendMessage>(&request.body)) {
-    radio.send(session.uav, request.sequence, same_instant(entry.request_at), *send);
+    const SimTime sent_at = same_instant(entry.request_at);
+    if (send->to == link::kAutopilot)
+      controllers.send(session.uav, request.sequence, sent_at, send->bytes);
+    else
+      radio.send(session.uav, request.sequence, sent_at, *send);
     return entry.request_at;
   }
   if (const auto* receive = std::get_if<link::ReceiveMessage>(&request.body))

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "controller_links.h"
 #include "radio_traffic.h"
 #include "session.h"
 #include "stepper.h"
@@ -14,7 +15,13 @@ const char* kind_of(const link::Request& request);
 /// A request arrives at its instant: its entry, with its timestamp.
 PendingInteraction arrive(const Session& session, Sent sent, Timeline& time);
 
+/// What requests are for.
+struct Parts {
+  Stepper& stepper;
+  RadioTraffic& radio;
+  ControllerLinks& controllers;
+};
 /// Plans what it does, and notes it in its entry. Returns the timestamp of its reply.
-ExecTime plan(Session& session, PendingInteraction& pending, Stepper& stepper, RadioTraffic& radio);
+ExecTime plan(Session& session, PendingInteraction& pending, const Parts& parts);
 
 }  // namespace tether::coordinator

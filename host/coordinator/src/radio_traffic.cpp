@@ -33,6 +33,13 @@ void RadioTraffic::send(std::size_t uav, std::uint64_t sequence, SimTime at,
   medium_.send(sent);
 }
 
+bool RadioTraffic::accept(std::size_t uav, Received message) {
+  Box& box = boxes_[uav];
+  if (box.is_closed || is_full(uav)) return false;
+  box.inbox.push_back(std::move(message));
+  return true;
+}
+
 bool RadioTraffic::promise(std::size_t uav) {
   Box& box = boxes_[uav];
   if (box.inbox.size() <= box.promised) return false;
@@ -42,9 +49,9 @@ bool RadioTraffic::promise(std::size_t uav) {
 
 void RadioTraffic::receive(std::size_t uav, record::Interaction& entry, link::Reply& reply) {
   Box& box = boxes_[uav];
-  const auto& [message, to, outcome, began_at, at, link, snr_db] = box.inbox.front();
-  entry.received = {uavs_[message.from], message.sequence, at};
-  reply.message = {uavs_[message.from], message.sent_at, at, *message.bytes};
+  const Received& message = box.inbox.front();
+  entry.received = {message.from, message.sequence, message.at};
+  reply.message = {message.from, message.sent_at, message.at, *message.bytes};
   box.inbox.pop_front();
   --box.promised;
 }
@@ -64,17 +71,17 @@ std::vector<radio::Arrival> RadioTraffic::handle_next(const radio::Medium::LinkO
 bool RadioTraffic::take(SimTime st, radio::Arrival arrival) {
   constexpr std::size_t kDroppedPerQueued = 9;  // that a radio may be overloaded by for ever
   Box& sender = boxes_[arrival.message.from];
-  Box& receiver = boxes_[arrival.to];
-  if (arrival.outcome == radio::Outcome::kDelivered && receiver.inbox.size() >= inbox_messages_)
+  if (arrival.outcome == radio::Outcome::kDelivered && is_full(arrival.to))
     arrival.outcome = radio::Outcome::kInboxFull;
   log_arrival(st, arrival);
   if (arrival.outcome == radio::Outcome::kQueueFull)
     ++sender.full_queues;
   else
     sender.full_queues -= std::min(sender.full_queues, kDroppedPerQueued);
-  if (arrival.outcome != radio::Outcome::kDelivered || receiver.is_closed) return false;
-  receiver.inbox.push_back(std::move(arrival));
-  return true;
+  if (arrival.outcome != radio::Outcome::kDelivered) return false;
+  const radio::Message& message = arrival.message;
+  return accept(arrival.to, {uavs_[message.from], message.sequence, message.sent_at, arrival.at,
+                             message.bytes});
 }
 
 std::optional<Fault> RadioTraffic::flood_of(std::size_t uav) const {

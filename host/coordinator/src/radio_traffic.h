@@ -4,6 +4,7 @@
 #include "validator.h"
 
 #include <deque>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,7 +17,7 @@
 
 namespace tether::coordinator {
 
-/// Messages between UAVs: those in transit, those that have arrived, and what a SUT may send. The
+/// Messages between UAVs: those in transit, and what a SUT may send; and the inbox of each SUT. The
 /// caller decides when the next event of the radio is handled. Not thread-safe.
 class RadioTraffic {
  public:
@@ -34,6 +35,17 @@ class RadioTraffic {
   /// `message.to` is a name of `uavs`, or empty: all others.
   void send(std::size_t uav, std::uint64_t sequence, SimTime at, const link::SendMessage& message);
 
+  /// A message of another kind has arrived, which the SUT receives in turn. False: the inbox is
+  /// full, or closed.
+  struct Received {
+    std::string from;
+    std::uint64_t sequence = 0;
+    SimTime sent_at;
+    SimTime at;
+    std::shared_ptr<const std::vector<std::uint8_t>> bytes;
+  };
+  bool accept(std::size_t uav, Received message);
+  bool is_full(std::size_t uav) const { return boxes_[uav].inbox.size() >= inbox_messages_; }
   /// Promises a message to a call, if one has arrived that no other call was promised.
   bool promise(std::size_t uav);
   /// Gives the first message to a call that was promised one.
@@ -54,8 +66,8 @@ class RadioTraffic {
 
  private:
   struct Box {
-    std::deque<radio::Arrival> inbox;  // arrived, in the order of time
-    std::size_t promised = 0;          // calls that will receive one of them
+    std::deque<Received> inbox;  // arrived, in the order of time
+    std::size_t promised = 0;    // calls that will receive one of them
     bool is_closed = false;
     RadioBudget budget;
     std::size_t full_queues = 0;  // messages without room, beyond nine for each that was sent

@@ -114,10 +114,10 @@ void RunLog::stop(SimTime st, const record::Stop& stop) {
   put(st, stop);
 }
 
-// In the order of the medium, which is that of time.
-void RunLog::radio(SimTime st, record::RadioMessage message) {
+// Events are handled in the order of time.
+void RunLog::in_order(SimTime st, record::Message message) {
   if (collects_)
-    radio_.emplace_back(st, std::move(message));
+    in_order_.emplace_back(st, std::move(message));
   else
     guarded([&] { recorder_->write(st, message); });
 }
@@ -164,8 +164,9 @@ void RunLog::settle() {
   collects_ = false;
   for (Collected& collected : collected_) write(collected.st, collected.message);
   collected_.clear();
-  for (const auto& logged : radio_) guarded([&] { recorder_->write(logged.first, logged.second); });
-  radio_.clear();
+  for (const auto& logged : in_order_)
+    guarded([&] { recorder_->write(logged.first, logged.second); });
+  in_order_.clear();
 }
 
 // Inserts the message before those of other SUTs that have a greater key. Those of one SUT stay in

@@ -45,7 +45,8 @@ class RunLog {
   void battery(SimTime st, const std::string& uav, const energy::Status& status);
   void annotation(SimTime st, record::Annotation annotation) { put(st, std::move(annotation)); }
   void stop(SimTime st, const record::Stop& stop);
-  void radio(SimTime st, record::RadioMessage message);
+  void radio(SimTime st, record::RadioMessage message) { in_order(st, std::move(message)); }
+  void link(SimTime st, record::AutopilotMessage message) { in_order(st, std::move(message)); }
   void image(SimTime st, const std::string& uav, const std::string& sensor,
              const uav::CameraSample& sample);
   void flush();
@@ -74,6 +75,7 @@ class RunLog {
     ExecTime reached;  // time of its last interaction
   };
 
+  void in_order(SimTime st, record::Message message);
   void take_clearance(SimTime st, const std::string& uav, const sim::Clearance& clearance);
   void put(SimTime st, record::Message message);
   void write(SimTime st, record::Message& message);
@@ -85,9 +87,9 @@ class RunLog {
   std::uint64_t images_ = 0;                         // rendered because a SUT read them
   bool repeatable_ = false;
   bool collects_ = false;
-  std::map<std::string, Row> rows_;                              // by UAV
-  std::vector<Collected> collected_;                             // of one ST
-  std::vector<std::pair<SimTime, record::RadioMessage>> radio_;  // the same, after those
+  std::map<std::string, Row> rows_;                            // by UAV
+  std::vector<Collected> collected_;                           // of one ST
+  std::vector<std::pair<SimTime, record::Message>> in_order_;  // the same, after those
 };
 
 }  // namespace tether::coordinator

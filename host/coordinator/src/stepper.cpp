@@ -204,6 +204,35 @@ uav::BatterySample Stepper::read_battery(std::size_t uav, record::Interaction& e
   return {st_, now.voltage_V, now.current_A, now.charge};
 }
 
+// The noise of its measurements is that of the sensor, with numbers of their own.
+autopilot::Sensed Stepper::sense(std::size_t uav) {
+  constexpr std::uint64_t kFirstIndex = std::uint64_t{1} << 40;
+  autopilot::Sensed sensed{
+      .at = st_, .truth = guarded([&](sim::Simulator& s) { return s.ground_truth(uav).body; })};
+  if (has_battery_[uav]) {
+    const auto battery = guarded([&](sim::Simulator& s) { return s.battery(uav); });
+    if (battery)
+      sensed.battery =
+          uav::BatterySample{st_, battery->voltage_V, battery->current_A, battery->charge};
+  }
+  sensed.measure = [this, uav](uav::SensorKind kind) -> std::optional<uav::Sample> {
+    const std::vector<sim::Sensor>& sensors = simulator_->world().uavs[uav].sensors;
+    const auto sensor = std::ranges::find(sensors, kind, &sim::Sensor::kind);
+    if (sensor == sensors.end()) return std::nullopt;
+    return guarded([&](sim::Simulator& s) {
+      s.capture(sensed_);
+      return s.measure(
+          sensed_, uav, static_cast<std::size_t>(sensor - sensors.begin()),
+          kFirstIndex + static_cast<std::uint64_t>(st_.time_since_epoch() / grid_.dt()));
+    });
+  };
+  return sensed;
+}
+
+void Stepper::fly(std::size_t uav, const uav::Setpoint& setpoint) {
+  guarded([&](sim::Simulator& s) { s.apply(uav, setpoint); });
+}
+
 radio::Link Stepper::link(std::size_t uav, std::size_t other) {
   return guarded([&](sim::Simulator& s) {
     const uav::Vec3 p_W_m = s.ground_truth(uav).body.p_WB - s.ground_truth(other).body.p_WB;

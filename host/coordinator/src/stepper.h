@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include <tether/autopilot/flight_controller.h>
 #include <tether/base/error.h>
 #include <tether/radio/link_budget.h>
 #include <tether/record/messages.h>
@@ -77,6 +78,10 @@ class Stepper {
   void close(std::size_t uav);
   /// The sample for the read of this interaction, noted in it; none if it is not a read.
   std::optional<uav::Sample> measure(std::size_t uav, record::Interaction& entry);
+  /// What the UAV's flight controller is given now. Valid as long as ST does not advance.
+  autopilot::Sensed sense(std::size_t uav);
+  /// It follows this from now on.
+  void fly(std::size_t uav, const uav::Setpoint& setpoint);
   bool has_battery(std::size_t uav) const { return has_battery_[uav]; }
   /// The battery now, noted in the interaction. @pre has_battery(uav)
   uav::BatterySample read_battery(std::size_t uav, record::Interaction& entry);
@@ -114,6 +119,7 @@ class Stepper {
   CommandQueue commands_;
   std::vector<bool> has_battery_;    // by UAV; all false: energy is not simulated
   std::vector<ComputerLoad> loads_;  // by UAV
+  sim::Snapshot sensed_;             // for flight controllers
   SimTime st_{};
   std::int64_t ground_truths_ = 0;  // instants logged so far
 };

@@ -82,6 +82,11 @@ MaybeFault body_fault(const link::ReadSensor& read, const Standing& sut) {
 }
 
 MaybeFault room_fault(std::size_t setpoints, const Standing& sut) {
+  if (sut.has_controller)
+    return Fault{Kind::kNotAvailable,
+                 fmt::format("a command, but its UAV has a flight controller, which takes commands "
+                             "by MAVLink: send them to \"{}\"",
+                             link::kAutopilot)};
   if (sut.waiting_setpoints + setpoints <= kMaxWaitingSetpoints) return std::nullopt;
   return Fault{Kind::kTooMany, fmt::format("a command while {} set-points are pending; at most {} "
                                            "may be",
@@ -111,6 +116,7 @@ MaybeFault body_fault(const link::Finish&, const Standing&) {
 
 MaybeFault body_fault(const link::SendMessage& send, const Standing& sut) {
   const auto found = std::ranges::find(sut.uavs, send.to);
+  if (send.to == link::kAutopilot && sut.has_controller) return std::nullopt;
   const bool is_known = send.to.empty()
                             ? sut.uavs.size() > 1
                             : found != sut.uavs.end() &&

@@ -69,6 +69,7 @@ struct Standing {
   const Sampler& sensors;
   bool has_battery = false;
   uav::FlightLimits limits{};
+  bool has_controller = false;  ///< a flight controller, which takes its commands
   const sync::ClockPlausibility* plausibility = nullptr;  ///< nullptr: its clock is not checked
   int clock_cores = 0;  ///< cores whose time its CPU clock adds up; 0: another clock
 };

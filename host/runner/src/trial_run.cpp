@@ -1,5 +1,7 @@
 #include "trial_run.h"
 
+#include "controller_options.h"
+
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
@@ -139,7 +141,7 @@ void share_boards(const scenario::Condition& condition, coordinator::RunOptions&
 }
 
 coordinator::RunOptions run_options(const TrialSpec& spec, const TrialInputs& inputs,
-                                    const std::string& token,
+                                    const sim::Simulator& simulator, const std::string& token,
                                     const std::optional<record::TargetInfo>& target) {
   coordinator::RunOptions options;
   options.policy = spec.condition.policy == scenario::Policy::kFreeRunning
@@ -151,6 +153,8 @@ coordinator::RunOptions run_options(const TrialSpec& spec, const TrialInputs& in
     uav.timings = inputs.timings[i];
     uav.command_latency = spec.scenario.uavs[i].command_latency;
     uav.setpoint_loss = spec.scenario.uavs[i].setpoint_loss;
+    if (const auto& controller = spec.scenario.uavs[i].flight_controller)
+      uav.controller = controller_options(*controller, simulator, i);
     const scenario::Computer& own = computer_of(spec.condition, i);
     uav.clock = own.clock;
     uav.computer = own.name;
@@ -293,8 +297,8 @@ TrialRun::TrialRun(const TrialSpec& spec, const TrialInputs& inputs, RunningSimu
       target_(first_target(spec, boards)),
       file_(record::make_mcap_recorder(spec.folder / kRecordFile)),
       recorder_({file_.get(), &memory_}),
-      coordinator_(simulator.get(), recorder_, run_options(spec, inputs, token_, target_),
-                   host_now),
+      coordinator_(simulator.get(), recorder_,
+                   run_options(spec, inputs, simulator.get(), token_, target_), host_now),
       server_((allow_connections(spec.scenario.uavs.size()), listen(spec, boards))),
       sut_run_{sut_address(spec, nullptr, *server_),
                token_,

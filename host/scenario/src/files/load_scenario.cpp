@@ -4,6 +4,7 @@
 #include "tables/read_clock.h"
 #include "tables/read_computers.h"
 #include "tables/read_delay.h"
+#include "tables/read_flight_controller.h"
 #include "tables/read_motion.h"
 #include "tables/read_radio.h"
 #include "tables/read_replay.h"
@@ -82,6 +83,18 @@ void read_commands(const toml::Table& table, Scenario& scenario, UavSetup& uav) 
       static_cast<uav::LossAction>(table.choice("on_setpoint_loss", kActions));
 }
 
+constexpr std::string_view kAutopilot = "autopilot";  // as link::kAutopilot
+
+/// With a flight controller, commands are its own.
+void reject_beside_controller(const toml::Table& table) {
+  for (const char* key :
+       {"command_latency_ms", "command_latency", "setpoint_timeout_ms", "on_setpoint_loss"})
+    if (table.has(key))
+      table.fail(key,
+                 "has no effect beside 'flight_controller', which has its own link and time-out. "
+                 "Remove this key; see 'link_latency_ms' and the parameter COM_OF_LOSS_T.");
+}
+
 UavSetup read_uav(const toml::Table& table, const std::optional<Sut>& default_sut,
                   Scenario& scenario) {
   constexpr toml::Range kCoordinate_m{.min = -1e5, .max = 1e5};
@@ -102,6 +115,8 @@ UavSetup read_uav(const toml::Table& table, const std::optional<Sut>& default_su
     uav.energy = load_energy(named_file(table, "energy", ShippedKind::kEnergy));
     scenario.files.push_back(uav.energy->file);
   }
+  uav.flight_controller = read_flight_controller(table);
+  if (uav.flight_controller) reject_beside_controller(table);
   uav.seat = read_seat(table, scenario);
   uav.sut = read_sut(table, default_sut, scenario);
   if (uav.sut.mission)
@@ -117,6 +132,8 @@ void read_uavs(const toml::Table& root, Scenario& scenario) {
   for (const toml::Table& table : root.tables("uav", kUavKeys)) {
     scenario.uavs.push_back(read_uav(table, default_sut, scenario));
     const std::string& name = scenario.uavs.back().placement.name;
+    if (name == kAutopilot)
+      table.fail("name", "is the name of flight controllers for programs. Choose another one.");
     if (!names.insert(name).second) {
       table.fail(
           "name",
@@ -430,6 +447,10 @@ Scenario read_scenario(const std::filesystem::path& file, const std::vector<Sett
   read_anchors(root, scenario);
   read_computers(root, scenario);
   read_uavs(root, scenario);
+  const bool lands_faster = std::ranges::any_of(
+      scenario.uavs, [](const UavSetup& uav) { return uav.flight_controller.has_value(); });
+  if (lands_faster && !root.has("max_contact_speed_m_s"))
+    scenario.max_contact_speed_m_s = kHardLanding_m_s;
   require_users(scenario);
   scenario.radio = read_radio(root, scenario.files);
   read_motion(root, scenario);

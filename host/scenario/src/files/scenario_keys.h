@@ -26,7 +26,7 @@ inline constexpr std::array<std::string_view, 19> kScenarioKeys = {"name",
                                                                    "wind",
                                                                    "moving"};
 
-inline constexpr std::array<std::string_view, 15> kUavKeys = {"name",
+inline constexpr std::array<std::string_view, 16> kUavKeys = {"name",
                                                               "model",
                                                               "position_m",
                                                               "yaw_deg",
@@ -40,7 +40,8 @@ inline constexpr std::array<std::string_view, 15> kUavKeys = {"name",
                                                               "energy",
                                                               "sut",
                                                               "target",
-                                                              "pinned_core"};
+                                                              "pinned_core",
+                                                              "flight_controller"};
 
 inline constexpr std::array<std::string_view, 16> kConditionKeys = {
     "name",       "description",    "policy",           "clock",

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include <tether/autopilot/flight_controller.h>
 #include <tether/base/time.h>
 #include <tether/computer/clock.h>
 #include <tether/coordinator/given_time.h>
@@ -24,6 +25,16 @@
 /// sessions of the SUTs, applies the timing of sensors and the decisions of the barrier, and writes
 /// the record.
 namespace tether::coordinator {
+
+/// The flight controller of a UAV, and its link to the SUT.
+struct ControllerOptions {
+  std::string name;      ///< for the record
+  std::string estimate;  ///< what it flies on, for the record: a sensor, or "truth"
+  std::function<std::unique_ptr<autopilot::FlightController>()> make;
+  Duration period{0};        ///< of its steps; > 0, a multiple of the simulator's
+  double link_baud = 0.0;    ///< 0: bytes take no time
+  Duration link_latency{0};  ///< each way; >= 0
+};
 
 /// One UAV of the world and its SUT.
 struct UavOptions {
@@ -46,6 +57,8 @@ struct UavOptions {
   /// The core on which it runs; then only pinned programs run there.
   std::optional<int> pinned_core{};
   std::optional<uav::SetpointLoss> setpoint_loss{};  ///< none: it keeps the last set-point
+  /// None: commands of the SUT are those of the vehicle's own loops.
+  std::optional<ControllerOptions> controller{};
 };
 
 /// A computer with several programs, which share its cores: a virtual one (sync::SharedCores), or

@@ -15,6 +15,7 @@
 #include <tether/mission/mission.h>
 #include <tether/radio/settings.h>
 #include <tether/scenario/energy.h>
+#include <tether/scenario/flight_controller.h>
 #include <tether/scenario/metric.h>
 #include <tether/scenario/profile.h>
 #include <tether/scenario/target.h>
@@ -106,6 +107,7 @@ struct UavSetup {
   /// own.
   std::optional<Seat> seat{};
   Sut sut;  ///< its own, or the scenario's; own parameters override the scenario's
+  std::optional<FlightController> flight_controller{};  ///< none: the SUT commands the UAV itself
 };
 
 /// A model of the world, with those nested in it, that moves along a path, whatever it meets.
@@ -138,6 +140,8 @@ inline constexpr double kLongestRun_s = 7 * 24 * 3600.0;
 
 /// Softer contacts are landings: UAVs descend at less.
 inline constexpr double kHardContact_m_s = 0.5;
+/// The same where a flight controller lands, at its own speed (MPC_LAND_SPEED).
+inline constexpr double kHardLanding_m_s = 1.0;
 
 struct Scenario {
   std::filesystem::path file;  ///< absolute

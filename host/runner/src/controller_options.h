@@ -1,0 +1,16 @@
+#pragma once
+
+#include <cstddef>
+
+#include <tether/coordinator/coordinator.h>
+#include <tether/scenario/flight_controller.h>
+#include <tether/sim/simulator.h>
+
+namespace tether::runner {
+
+/// The flight controller of a UAV of the simulator's world.
+/// @throws Error(kBadFile), where the scenario has it, if the simulator cannot follow it.
+coordinator::ControllerOptions controller_options(const scenario::FlightController& controller,
+                                                  const sim::Simulator& simulator, std::size_t uav);
+
+}  // namespace tether::runner
