@@ -37,6 +37,7 @@ constexpr const char* kFooter =
 Examples:
   tether-exec ./my-uav-program --config flight.yaml
   tether-exec --freezer signal --verbose python3 fly.py
+  tether-exec --as-is python3 companion.py
   tether-exec --group /tmp/board --members 2 &
   TETHER_UAV=uav1 tether-exec --group /tmp/board ./my-uav-program
 
@@ -69,8 +70,12 @@ struct Row {
   const char* needs = "";  ///< what is missing without a value
 };
 
-std::vector<Row> rows_of(supervisor::Settings& settings) {
-  return {{{"--freezer auto|cgroup|signal",
+std::vector<Row> rows_of(supervisor::Settings& settings, bool& is_as_is) {
+  return {{{"--as-is",
+            "Fly a program that knows nothing of Tether: its clocks and waits follow its execution "
+            "time, and its UDP ports are those of the flight controller",
+            &is_as_is}},
+          {{"--freezer auto|cgroup|signal",
             "How to stop the program: cgroup (with a cgroup v2), signal (with SIGSTOP) or auto "
             "(cgroup if the system allows it, otherwise signal) [auto]",
             [&](const std::string& word) { set_freezer(settings, word); }},
@@ -126,7 +131,7 @@ std::string conflict(const supervisor::Settings& settings, bool has_own_options)
 Parsed parse_command_line(const std::vector<std::string>& arguments) {
   Parsed parsed;
   bool has_own_options = false;  // of a process that stops programs
-  const std::vector<Row> rows = rows_of(parsed.settings);
+  const std::vector<Row> rows = rows_of(parsed.settings, parsed.is_as_is);
   auto at = arguments.begin();
   for (; at != arguments.end() && at->starts_with('-'); ++at) {
     const std::string option = *at;
@@ -159,7 +164,9 @@ Parsed parse_command_line(const std::vector<std::string>& arguments) {
     }
   }
   parsed.settings.command.assign(at, arguments.end());
-  const std::string wrong = conflict(parsed.settings, has_own_options);
+  std::string wrong = conflict(parsed.settings, has_own_options);
+  if (parsed.is_as_is && (has_own_options || !parsed.settings.group.empty()))
+    wrong = "--as-is starts a program that nobody stops: use it without other options";
   if (!wrong.empty()) return wrong_use(wrong);
   return parsed;
 }

@@ -18,6 +18,7 @@ struct Notice {
 struct Parsed {
   supervisor::Settings settings;
   std::optional<Notice> notice;
+  bool is_as_is = false;  ///< its command knows nothing of Tether (as_is.h)
 };
 /// @param arguments without the program's name.
 Parsed parse_command_line(const std::vector<std::string>& arguments);

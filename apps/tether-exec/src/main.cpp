@@ -1,3 +1,4 @@
+#include "as_is.h"
 #include "command_line.h"
 
 #include <cstdio>
@@ -17,6 +18,10 @@ int run(const std::vector<std::string>& arguments) {
   if (parsed.notice) {
     std::fputs(parsed.notice->text.c_str(), parsed.notice->exit_code == 0 ? stdout : stderr);
     return parsed.notice->exit_code;
+  }
+  if (parsed.is_as_is) {
+    say(become_as_is(parsed.settings.command));
+    return 2;
   }
   if (const Status good = read_environment(parsed.settings); !good) {
     say(good.failure().message);

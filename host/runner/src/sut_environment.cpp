@@ -48,6 +48,7 @@ SutCommand sut_command(const scenario::Sut& sut, const std::optional<scenario::T
       program = (std::filesystem::path(target->program_folder) / program).string();
     command.words.insert(command.words.end(), target->launcher.begin(), target->launcher.end());
   }
+  if (sut.is_as_is) command.words.insert(command.words.end(), {"tether-exec", "--as-is"});
   command.program = command.words.size();
   command.words.insert(command.words.end(), words.begin(), words.end());
   return command;

@@ -77,8 +77,8 @@ std::vector<std::string> read_command(const toml::Table& sut, const std::filesys
   return command;
 }
 
-constexpr std::array<std::string_view, 5> kSutKeys = {"command", "concurrent", "mission",
-                                                      "parameters", "files"};
+constexpr std::array<std::string_view, 6> kSutKeys = {"command", "concurrent", "as_is",
+                                                      "mission", "parameters", "files"};
 
 // The SUT gets it as a file. Its clauses are checked against what the scenario has.
 void read_mission(const toml::Table& table, Scenario& scenario, Sut& sut) {
@@ -89,19 +89,28 @@ void read_mission(const toml::Table& table, Scenario& scenario, Sut& sut) {
   const std::filesystem::path file = named_file(table, "mission", ShippedKind::kMission);
   sut.mission = mission::load_mission(file);
   scenario.files.push_back(file);
+  if (sut.is_as_is) return;  // it knows nothing of missions
   sut.parameters.emplace_back("mission", file.string());
   std::sort(sut.parameters.begin(), sut.parameters.end());
 }
 
 Sut read_program(const toml::Table& sut, const std::filesystem::path& folder) {
-  return {read_command(sut, folder), {}, sut.boolean_or("concurrent", false)};
+  Sut program{read_command(sut, folder), {}, sut.boolean_or("concurrent", false)};
+  program.is_as_is = sut.boolean_or("as_is", false);
+  return program;
 }
 
 // Nested supervisors would wait for each other.
 void require_one_supervisor(const toml::Table& table, const Sut& sut) {
   const std::filesystem::path program = sut.command.front();
-  if (!sut.concurrent || program.filename() != "tether-exec") return;
-  table.fail(table.has("concurrent") ? "concurrent" : "command",
+  if (sut.concurrent && sut.is_as_is)
+    table.fail(table.has("concurrent") ? "concurrent" : "as_is",
+               "is for programs that use Tether's library, and 'as_is' for those that do not. "
+               "Remove one.");
+  if ((!sut.concurrent && !sut.is_as_is) || program.filename() != "tether-exec") return;
+  table.fail(table.has("concurrent") ? "concurrent"
+             : table.has("as_is")    ? "as_is"
+                                     : "command",
              "starts the command under tether-exec, which 'command' does already. Remove "
              "\"tether-exec\" and its options from 'command'.");
 }
@@ -134,6 +143,7 @@ Sut read_sut(const toml::Table& uav, const std::optional<Sut>& fallback, Scenari
   const bool inherits = fallback && !own.has("command");
   Sut sut = inherits ? *fallback : read_program(own, scenario.file.parent_path());
   sut.concurrent = own.boolean_or("concurrent", sut.concurrent);
+  sut.is_as_is = own.boolean_or("as_is", sut.is_as_is);
   require_one_supervisor(own, sut);
   Sut given;
   given.parameters = read_parameters(own, scenario.files);

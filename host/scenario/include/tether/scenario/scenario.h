@@ -93,6 +93,9 @@ struct Sut {
   bool concurrent = false;
   /// What it flies, and by what the flight is judged; its file is the parameter "mission".
   std::optional<mission::Mission> mission{};
+  /// It knows nothing of Tether: tether-exec --as-is makes its clocks, waits and ports those of the
+  /// run.
+  bool is_as_is = false;
 };
 
 struct UavSetup {

@@ -1,0 +1,72 @@
+#pragma once
+
+#include "port.h"
+#include "threads.h"
+
+#include <atomic>
+#include <functional>
+#include <list>
+#include <memory>
+#include <mutex>
+#include <optional>
+
+#include <tether/base/time.h>
+#include <tether/client/simulated_vehicle.h>
+
+namespace tether::as_is {
+
+/// The program's side of the run: its clock is ET, and its waits are interactions
+/// (docs/guide/as-is.md). One for each process that is under test. Its functions are called by
+/// threads that are Inside.
+///
+/// A wait registers its deadline. When all threads of the program wait, one of them leads: it asks
+/// the coordinator for what comes first, a message of the flight controller or the earliest
+/// deadline, and ET goes on from there. The messages are put into the program's own sockets, so
+/// that the kernel wakes whoever waits for them.
+///
+/// Thread-safe.
+class Agent {
+ public:
+  /// nullptr: this process is not under test, or no more.
+  static Agent* get() { return instance_.load(std::memory_order_acquire); }
+  /// Connects, as the environment says. Ends the process, with a line, if it cannot.
+  static void start();
+
+  /// In a forked child: it is not under test, and has the machine's clocks.
+  static void leave() { instance_.store(nullptr); }
+
+  ExecTime now() const { return vehicle_->now(); }
+
+  /// Waits until `is_ready`, or the deadline (none: for ever). `block(slice)` waits for the same in
+  /// real time, for at most so long. False: the deadline came first.
+  bool wait(std::optional<ExecTime> deadline, const std::function<bool()>& is_ready,
+            const std::function<void(Duration)>& block);
+  void sleep_until(ExecTime deadline);
+  /// Puts what has arrived up to now into the program's sockets.
+  void take_arrived();
+
+  Port& port() { return port_; }
+  /// To the flight controller. False: the UAV has none.
+  bool send(std::span<const std::uint8_t> bytes);
+
+  /// The program ends with this code.
+  void finish(int exit_code);
+
+ private:
+  explicit Agent(std::unique_ptr<client::Vehicle> vehicle) : vehicle_(std::move(vehicle)) {}
+  /// Takes the next message, or lets ET reach that instant.
+  bool receive_until(std::optional<ExecTime> until);
+  bool lead();
+  [[noreturn]] static void end(const Failure& failure);
+
+  static std::atomic<Agent*> instance_;
+
+  std::unique_ptr<client::Vehicle> vehicle_;
+  Port port_;
+  Threads threads_;
+  std::mutex leading_;
+  std::mutex waits_mutex_;
+  std::list<std::optional<ExecTime>> waits_;  // deadlines of those that wait
+};
+
+}  // namespace tether::as_is

@@ -1,0 +1,206 @@
+// Sockets of the flight controller's port in place of the C library's. Others are left alone.
+
+#include "clocks.h"
+#include "in_place.h"
+
+#include <cerrno>
+#include <optional>
+#include <vector>
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/time.h>
+#include <sys/uio.h>
+#include <unistd.h>
+
+namespace tether::as_is {
+namespace {
+
+/// The agent, if the socket is one of its port.
+Agent* agent_of(int socket) {
+  Agent* const agent = tether::as_is::agent();
+  return agent != nullptr && agent->port().is_ours(socket) ? agent : nullptr;
+}
+
+/// How long a read of it waits; none: for ever.
+std::optional<Duration> timeout_of(int socket, int flags) {
+  if ((flags & MSG_DONTWAIT) != 0 || (::fcntl(socket, F_GETFL) & O_NONBLOCK) != 0)
+    return Duration(0);
+  timeval limit{};
+  socklen_t size = sizeof limit;
+  if (::getsockopt(socket, SOL_SOCKET, SO_RCVTIMEO, &limit, &size) != 0) return std::nullopt;
+  const Duration timeout =
+      std::chrono::seconds(limit.tv_sec) + std::chrono::microseconds(limit.tv_usec);
+  return timeout > Duration(0) ? std::optional(timeout) : std::nullopt;
+}
+
+/// `take()`: the real read, without waiting. −1 with EAGAIN: nothing is there.
+template <class Take>
+ssize_t read_when_ready(Agent& agent, int socket, int flags, Take take) {
+  const Inside inside;
+  ssize_t result = take();
+  const auto is_empty = [&] { return result < 0 && (errno == EAGAIN || errno == EWOULDBLOCK); };
+  if (!is_empty()) return result;
+  const auto timeout = timeout_of(socket, flags);
+  if (timeout == Duration(0)) {
+    agent.take_arrived();
+    return take();
+  }
+  const auto deadline = timeout ? std::optional(agent.now() + *timeout) : std::nullopt;
+  agent.wait(
+      deadline,
+      [&] {
+        result = take();
+        return !is_empty();
+      },
+      [&](Duration slice) {
+        pollfd fd{socket, POLLIN, 0};
+        const timespec time = to_timespec(slice);
+        TETHER_REAL(ppoll)(&fd, 1, &time, nullptr);
+      });
+  return result;
+}
+
+ssize_t send_bytes(Agent& agent, const void* bytes, std::size_t size) {
+  const Inside inside;
+  agent.send({static_cast<const std::uint8_t*>(bytes), size});
+  return static_cast<ssize_t>(size);
+}
+
+/// Whether a message to this address from this socket goes to the flight controller: then it is
+/// ours from now on.
+Agent* agent_for(int socket, const sockaddr* to, socklen_t size) {
+  Agent* const agent = tether::as_is::agent();
+  if (agent == nullptr) return nullptr;
+  if (to == nullptr) return agent->port().is_ours(socket) ? agent : nullptr;
+  if (!Port::is_controller(to, size)) return nullptr;
+  if (!agent->port().is_ours(socket)) {
+    // Bound, so that messages can be sent to it.
+    const Inside inside;
+    sockaddr_in any{};
+    any.sin_family = AF_INET;
+    TETHER_REAL(bind)(socket, reinterpret_cast<const sockaddr*>(&any), sizeof any);
+    agent->port().adopt(socket);
+  }
+  return agent;
+}
+
+}  // namespace
+}  // namespace tether::as_is
+
+using namespace tether::as_is;
+
+TETHER_IN_PLACE int bind(int socket, const sockaddr* address, socklen_t size) {
+  Agent* const agent = tether::as_is::agent();
+  int type = 0;
+  socklen_t type_size = sizeof type;
+  const bool is_port = agent != nullptr && Port::is_companion(address, size) &&
+                       ::getsockopt(socket, SOL_SOCKET, SO_TYPE, &type, &type_size) == 0 &&
+                       type == SOCK_DGRAM;
+  if (!is_port) return TETHER_REAL(bind)(socket, address, size);
+  const Inside inside;
+  return agent->port().bind(socket, address, size);
+}
+
+TETHER_IN_PLACE int connect(int socket, const sockaddr* address, socklen_t size) {
+  Agent* const agent = agent_for(socket, address, size);
+  if (agent == nullptr || address == nullptr) return TETHER_REAL(connect)(socket, address, size);
+  const sockaddr_in& own = agent->port().own();
+  return TETHER_REAL(connect)(socket, reinterpret_cast<const sockaddr*>(&own), sizeof own);
+}
+
+TETHER_IN_PLACE int getsockname(int socket, sockaddr* __restrict address,
+                                socklen_t* __restrict size) {
+  Agent* const agent = agent_of(socket);
+  if (agent != nullptr && agent->port().believed(socket, address, size)) return 0;
+  return TETHER_REAL(getsockname)(socket, address, size);
+}
+
+TETHER_IN_PLACE int close(int fd) {
+  if (Agent* const agent = tether::as_is::agent()) agent->port().forget(fd);
+  return TETHER_REAL(close)(fd);
+}
+
+TETHER_IN_PLACE ssize_t recvfrom(int socket, void* __restrict bytes, size_t size, int flags,
+                                 sockaddr* __restrict from, socklen_t* __restrict from_size) {
+  Agent* const agent = agent_of(socket);
+  if (agent == nullptr) return TETHER_REAL(recvfrom)(socket, bytes, size, flags, from, from_size);
+  const ssize_t got = read_when_ready(*agent, socket, flags, [&] {
+    return TETHER_REAL(recvfrom)(socket, bytes, size, flags | MSG_DONTWAIT, from, from_size);
+  });
+  if (got >= 0) agent->port().believe(from, from_size);
+  return got;
+}
+
+TETHER_IN_PLACE ssize_t recv(int socket, void* bytes, size_t size, int flags) {
+  if (agent_of(socket) == nullptr) return TETHER_REAL(recv)(socket, bytes, size, flags);
+  return recvfrom(socket, bytes, size, flags, nullptr, nullptr);
+}
+
+TETHER_IN_PLACE ssize_t read(int fd, void* bytes, size_t size) {
+  if (agent_of(fd) == nullptr) return TETHER_REAL(read)(fd, bytes, size);
+  return recvfrom(fd, bytes, size, 0, nullptr, nullptr);
+}
+
+TETHER_IN_PLACE ssize_t recvmsg(int socket, msghdr* message, int flags) {
+  Agent* const agent = agent_of(socket);
+  if (agent == nullptr) return TETHER_REAL(recvmsg)(socket, message, flags);
+  const ssize_t got = read_when_ready(*agent, socket, flags, [&] {
+    return TETHER_REAL(recvmsg)(socket, message, flags | MSG_DONTWAIT);
+  });
+  if (got >= 0)
+    agent->port().believe(static_cast<sockaddr*>(message->msg_name), &message->msg_namelen);
+  return got;
+}
+
+TETHER_IN_PLACE ssize_t __recv_chk(int socket, void* bytes, size_t size, size_t, int flags) {
+  return recv(socket, bytes, size, flags);
+}
+
+TETHER_IN_PLACE ssize_t __recvfrom_chk(int socket, void* bytes, size_t size, size_t, int flags,
+                                       sockaddr* from, socklen_t* from_size) {
+  return recvfrom(socket, bytes, size, flags, from, from_size);
+}
+
+TETHER_IN_PLACE ssize_t __read_chk(int fd, void* bytes, size_t size, size_t) {
+  return read(fd, bytes, size);
+}
+
+TETHER_IN_PLACE ssize_t sendto(int socket, const void* bytes, size_t size, int flags,
+                               const sockaddr* to, socklen_t to_size) {
+  Agent* const agent = agent_for(socket, to, to_size);
+  if (agent == nullptr) return TETHER_REAL(sendto)(socket, bytes, size, flags, to, to_size);
+  return send_bytes(*agent, bytes, size);
+}
+
+TETHER_IN_PLACE ssize_t send(int socket, const void* bytes, size_t size, int flags) {
+  if (agent_of(socket) == nullptr) return TETHER_REAL(send)(socket, bytes, size, flags);
+  return sendto(socket, bytes, size, flags, nullptr, 0);
+}
+
+TETHER_IN_PLACE ssize_t write(int fd, const void* bytes, size_t size) {
+  if (agent_of(fd) == nullptr) return TETHER_REAL(write)(fd, bytes, size);
+  return sendto(fd, bytes, size, 0, nullptr, 0);
+}
+
+TETHER_IN_PLACE ssize_t sendmsg(int socket, const msghdr* message, int flags) {
+  Agent* const agent =
+      agent_for(socket, static_cast<const sockaddr*>(message->msg_name), message->msg_namelen);
+  if (agent == nullptr) return TETHER_REAL(sendmsg)(socket, message, flags);
+  std::vector<std::uint8_t> bytes;
+  for (std::size_t i = 0; i < message->msg_iovlen; ++i) {
+    const auto* begin = static_cast<const std::uint8_t*>(message->msg_iov[i].iov_base);
+    bytes.insert(bytes.end(), begin, begin + message->msg_iov[i].iov_len);
+  }
+  return send_bytes(*agent, bytes.data(), bytes.size());
+}
+
+TETHER_IN_PLACE int sendmmsg(int socket, mmsghdr* messages, unsigned count, int flags) {
+  for (unsigned i = 0; i < count; ++i) {
+    const ssize_t sent = sendmsg(socket, &messages[i].msg_hdr, flags);
+    if (sent < 0) return i > 0 ? static_cast<int>(i) : -1;
+    messages[i].msg_len = static_cast<unsigned>(sent);
+  }
+  return static_cast<int>(count);
+}

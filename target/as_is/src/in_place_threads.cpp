@@ -1,0 +1,129 @@
+// Threads, timed waits for each other, and the end of the process, in place of the C library's.
+
+#include "clocks.h"
+#include "in_place.h"
+
+#include <cerrno>
+#include <memory>
+
+#include <pthread.h>
+#include <semaphore.h>
+#include <unistd.h>
+
+namespace tether::as_is {
+namespace {
+
+struct Begin {
+  void* (*function)(void*);
+  void* argument;
+  bool is_inside;  // a thread of this library
+};
+
+// What a thread of the program leaves behind when it ends, however it does.
+struct OfProgram {
+  OfProgram() = default;
+  ~OfProgram() { Threads::ended(); }
+};
+
+void* begin(void* argument) {
+  const std::unique_ptr<Begin> given(static_cast<Begin*>(argument));
+  const Begin copy = *given;
+  if (copy.is_inside) {
+    const Inside inside;
+    return copy.function(copy.argument);
+  }
+  thread_local const OfProgram kOfProgram;
+  static_cast<void>(&kOfProgram);
+  return copy.function(copy.argument);
+}
+
+/// `take(slice)`: the real wait, for so long in real time; ETIMEDOUT: not yet.
+template <class Take>
+int wait_until(Agent& agent, clockid_t clock, const timespec* until, Take take) {
+  if (!duration_of(*until)) return EINVAL;
+  const ExecTime deadline = et_of(clock, *until);
+  int result = ETIMEDOUT;
+  const Inside inside;
+  agent.wait(
+      deadline, [&] { return result != ETIMEDOUT; },
+      [&](Duration slice) {
+        timespec real{};
+        TETHER_REAL(clock_gettime)(CLOCK_REALTIME, &real);
+        const auto now = duration_of(real).value_or(Duration(0));
+        const timespec end = to_timespec(now + slice);
+        result = take(&end);
+      });
+  return result;
+}
+
+int wait_for_condition(Agent& agent, pthread_cond_t* condition, pthread_mutex_t* mutex,
+                       clockid_t clock, const timespec* until) {
+  return wait_until(agent, clock, until, [&](const timespec* end) {
+    return TETHER_REAL(pthread_cond_clockwait)(condition, mutex, CLOCK_REALTIME, end);
+  });
+}
+
+int wait_for_semaphore(Agent& agent, sem_t* semaphore, clockid_t clock, const timespec* until) {
+  if (TETHER_REAL(sem_trywait)(semaphore) == 0) return 0;
+  const int result = wait_until(agent, clock, until, [&](const timespec* end) {
+    return TETHER_REAL(sem_timedwait)(semaphore, end) == 0 ? 0 : errno;
+  });
+  if (result == 0) return 0;
+  errno = result;
+  return -1;
+}
+
+}  // namespace
+}  // namespace tether::as_is
+
+using namespace tether::as_is;
+
+TETHER_IN_PLACE int pthread_create(pthread_t* __restrict thread,
+                                   const pthread_attr_t* __restrict attributes,
+                                   void* (*function)(void*), void* __restrict argument) {
+  const bool is_inside = Inside::is();
+  auto given = std::make_unique<Begin>(Begin{function, argument, is_inside});
+  if (!is_inside) Threads::began();
+  const int result = TETHER_REAL(pthread_create)(thread, attributes, begin, given.get());
+  if (result == 0)
+    static_cast<void>(given.release());
+  else if (!is_inside)
+    Threads::ended();
+  return result;
+}
+
+TETHER_IN_PLACE int pthread_cond_timedwait(pthread_cond_t* __restrict condition,
+                                           pthread_mutex_t* __restrict mutex,
+                                           const timespec* __restrict until) {
+  Agent* const agent = tether::as_is::agent();
+  if (agent == nullptr) return TETHER_REAL(pthread_cond_timedwait)(condition, mutex, until);
+  return wait_for_condition(*agent, condition, mutex, CLOCK_REALTIME, until);
+}
+
+TETHER_IN_PLACE int pthread_cond_clockwait(pthread_cond_t* condition, pthread_mutex_t* mutex,
+                                           clockid_t clock, const timespec* until) {
+  Agent* const agent = tether::as_is::agent();
+  if (agent == nullptr) return TETHER_REAL(pthread_cond_clockwait)(condition, mutex, clock, until);
+  return wait_for_condition(*agent, condition, mutex, clock, until);
+}
+
+TETHER_IN_PLACE int sem_timedwait(sem_t* __restrict semaphore, const timespec* __restrict until) {
+  Agent* const agent = tether::as_is::agent();
+  if (agent == nullptr) return TETHER_REAL(sem_timedwait)(semaphore, until);
+  return wait_for_semaphore(*agent, semaphore, CLOCK_REALTIME, until);
+}
+
+TETHER_IN_PLACE int sem_clockwait(sem_t* semaphore, clockid_t clock, const timespec* until) {
+  Agent* const agent = tether::as_is::agent();
+  if (agent == nullptr) return TETHER_REAL(sem_clockwait)(semaphore, clock, until);
+  return wait_for_semaphore(*agent, semaphore, clock, until);
+}
+
+TETHER_IN_PLACE void _exit(int code) {
+  if (Agent* const agent = tether::as_is::agent()) {
+    const Inside inside;
+    agent->finish(code);
+  }
+  TETHER_REAL(_exit)(code);
+  __builtin_unreachable();
+}

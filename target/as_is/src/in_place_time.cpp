@@ -1,0 +1,83 @@
+// Clocks and sleeps in place of the C library's.
+
+#include "clocks.h"
+#include "in_place.h"
+
+#include <cerrno>
+
+#include <sys/time.h>
+#include <unistd.h>
+
+namespace tether::as_is {
+namespace {
+
+int sleep_for(Agent& agent, const timespec* duration) {
+  const auto wanted = duration_of(*duration);
+  if (!wanted) return EINVAL;
+  const Inside inside;
+  agent.sleep_until(agent.now() + *wanted);
+  return 0;
+}
+
+}  // namespace
+}  // namespace tether::as_is
+
+using namespace tether::as_is;
+
+TETHER_IN_PLACE int clock_gettime(clockid_t clock, timespec* time) {
+  Agent* const agent = tether::as_is::agent();
+  if (agent == nullptr || !is_ours(clock)) return TETHER_REAL(clock_gettime)(clock, time);
+  const Inside inside;
+  *time = shown(clock, agent->now());
+  return 0;
+}
+
+TETHER_IN_PLACE int gettimeofday(timeval* __restrict time, void* __restrict zone) {
+  Agent* const agent = tether::as_is::agent();
+  if (agent == nullptr) return TETHER_REAL(gettimeofday)(time, zone);
+  const Inside inside;
+  const timespec now = shown(CLOCK_REALTIME, agent->now());
+  *time = {now.tv_sec, now.tv_nsec / 1000};
+  return 0;
+}
+
+TETHER_IN_PLACE time_t time(time_t* out) {
+  Agent* const agent = tether::as_is::agent();
+  if (agent == nullptr) return TETHER_REAL(time)(out);
+  const Inside inside;
+  const time_t now = shown(CLOCK_REALTIME, agent->now()).tv_sec;
+  if (out != nullptr) *out = now;
+  return now;
+}
+
+TETHER_IN_PLACE int nanosleep(const timespec* duration, timespec* left) {
+  Agent* const agent = tether::as_is::agent();
+  if (agent == nullptr) return TETHER_REAL(nanosleep)(duration, left);
+  errno = sleep_for(*agent, duration);
+  return errno == 0 ? 0 : -1;
+}
+
+TETHER_IN_PLACE int clock_nanosleep(clockid_t clock, int flags, const timespec* until,
+                                    timespec* left) {
+  Agent* const agent = tether::as_is::agent();
+  if (agent == nullptr || !is_ours(clock))
+    return TETHER_REAL(clock_nanosleep)(clock, flags, until, left);
+  if ((flags & TIMER_ABSTIME) == 0) return sleep_for(*agent, until);
+  if (!duration_of(*until)) return EINVAL;
+  const Inside inside;
+  agent->sleep_until(et_of(clock, *until));
+  return 0;
+}
+
+TETHER_IN_PLACE int usleep(useconds_t duration_us) {
+  if (agent() == nullptr) return TETHER_REAL(usleep)(duration_us);
+  const timespec time = to_timespec(std::chrono::microseconds(duration_us));
+  return nanosleep(&time, nullptr);
+}
+
+TETHER_IN_PLACE unsigned sleep(unsigned duration_s) {
+  if (agent() == nullptr) return TETHER_REAL(sleep)(duration_s);
+  const timespec time{static_cast<time_t>(duration_s), 0};
+  nanosleep(&time, nullptr);
+  return 0;
+}

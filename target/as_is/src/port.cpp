@@ -1,0 +1,115 @@
+#include "port.h"
+
+#include "real.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include <arpa/inet.h>
+#include <unistd.h>
+
+namespace tether::as_is {
+namespace {
+
+// PX4's: the companion's port and the ground station's, and where the flight controller sends from.
+constexpr std::uint16_t kCompanions[] = {14540, 14550};
+constexpr std::uint16_t kControllers[] = {14580, 18570};
+constexpr std::uint16_t kController = kControllers[0];
+constexpr std::uint16_t kUnbound = 1;  // ours, but not bound by the program
+
+std::uint16_t port_of(const sockaddr* address, socklen_t size) {
+  if (address == nullptr) return 0;
+  if (address->sa_family == AF_INET && size >= sizeof(sockaddr_in))
+    return ntohs(reinterpret_cast<const sockaddr_in*>(address)->sin_port);
+  if (address->sa_family == AF_INET6 && size >= sizeof(sockaddr_in6))
+    return ntohs(reinterpret_cast<const sockaddr_in6*>(address)->sin6_port);
+  return 0;
+}
+
+void set_port(sockaddr* address, std::uint16_t port) {
+  if (address->sa_family == AF_INET)
+    reinterpret_cast<sockaddr_in*>(address)->sin_port = htons(port);
+  if (address->sa_family == AF_INET6)
+    reinterpret_cast<sockaddr_in6*>(address)->sin6_port = htons(port);
+}
+
+}  // namespace
+
+Port::Port() {
+  own_.sin_family = AF_INET;
+  own_.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  sender_ = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  socklen_t size = sizeof own_;
+  if (sender_ < 0 ||
+      TETHER_REAL(bind)(sender_, reinterpret_cast<const sockaddr*>(&own_), size) != 0 ||
+      TETHER_REAL(getsockname)(sender_, reinterpret_cast<sockaddr*>(&own_), &size) != 0)
+    own_.sin_port = 0;
+}
+
+bool Port::is_companion(const sockaddr* address, socklen_t size) {
+  return std::ranges::count(kCompanions, port_of(address, size)) > 0;
+}
+
+bool Port::is_controller(const sockaddr* address, socklen_t size) {
+  return std::ranges::count(kControllers, port_of(address, size)) > 0;
+}
+
+bool Port::is_ours(int socket) const {
+  return socket >= 0 && static_cast<std::size_t>(socket) < kSockets &&
+         bound_[static_cast<std::size_t>(socket)].load() != 0;
+}
+
+int Port::bind(int socket, const sockaddr* address, socklen_t size) {
+  sockaddr_storage any{};
+  std::memcpy(&any, address, std::min<std::size_t>(size, sizeof any));
+  const std::uint16_t believed = port_of(address, size);
+  auto* const really = reinterpret_cast<sockaddr*>(&any);
+  set_port(really, 0);
+  const int result = TETHER_REAL(bind)(socket, really, size);
+  if (result != 0 || static_cast<std::size_t>(socket) >= kSockets) return result;
+  if (bound_[static_cast<std::size_t>(socket)].exchange(believed) == 0) ++count_;
+  return 0;
+}
+
+void Port::adopt(int socket) {
+  if (socket < 0 || static_cast<std::size_t>(socket) >= kSockets) return;
+  std::uint16_t none = 0;
+  if (bound_[static_cast<std::size_t>(socket)].compare_exchange_strong(none, kUnbound)) ++count_;
+}
+
+void Port::forget(int socket) {
+  if (socket < 0 || static_cast<std::size_t>(socket) >= kSockets) return;
+  if (bound_[static_cast<std::size_t>(socket)].exchange(0) != 0) --count_;
+}
+
+bool Port::believed(int socket, sockaddr* address, socklen_t* size) const {
+  if (!is_ours(socket)) return false;
+  const std::uint16_t port = bound_[static_cast<std::size_t>(socket)].load();
+  if (port == kUnbound) return false;
+  if (TETHER_REAL(getsockname)(socket, address, size) == 0) set_port(address, port);
+  return true;
+}
+
+// A socket that is not bound yet has no address to send to; the kernel gives it one.
+void Port::deliver(std::span<const std::uint8_t> bytes) {
+  for (std::size_t socket = 0; socket < kSockets; ++socket) {
+    if (bound_[socket].load() == 0) continue;
+    sockaddr_storage to{};
+    socklen_t size = sizeof to;
+    auto* const address = reinterpret_cast<sockaddr*>(&to);
+    if (TETHER_REAL(getsockname)(static_cast<int>(socket), address, &size) != 0) continue;
+    sockaddr_in target = own_;
+    target.sin_port = htons(port_of(address, size));
+    if (target.sin_port == 0) continue;
+    TETHER_REAL(sendto)
+    (sender_, bytes.data(), bytes.size(), MSG_DONTWAIT, reinterpret_cast<const sockaddr*>(&target),
+     sizeof target);
+  }
+}
+
+void Port::believe(sockaddr* address, const socklen_t* size) const {
+  if (address == nullptr || size == nullptr) return;
+  if (port_of(address, *size) == ntohs(own_.sin_port)) set_port(address, kController);
+}
+
+}  // namespace tether::as_is

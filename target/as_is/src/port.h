@@ -1,0 +1,56 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <mutex>
+#include <span>
+
+#include <netinet/in.h>
+#include <sys/socket.h>
+
+namespace tether::as_is {
+
+/// The flight controller's UDP ports, as the program's own sockets. A socket that the program binds
+/// to the port of a companion, or sends from to that of a flight controller, is *ours*: what it
+/// sends goes to the coordinator, and what the flight controller sends is really sent to it over
+/// the loopback, so that the kernel has the queue and wakes who waits. Bound ports are others than
+/// the program believes, so that programs of several runs can have the same.
+///
+/// Thread-safe.
+class Port {
+ public:
+  Port();
+
+  /// Whether this address is that of a companion, which programs bind, or of a flight controller.
+  static bool is_companion(const sockaddr* address, socklen_t size);
+  static bool is_controller(const sockaddr* address, socklen_t size);
+
+  bool is_ours(int socket) const;
+  bool is_any() const { return count_.load() > 0; }
+  /// Binds a socket of the program to the port of a companion. As bind().
+  int bind(int socket, const sockaddr* address, socklen_t size);
+  /// The program sends from this socket to a flight controller, or has connected it.
+  void adopt(int socket);
+  void forget(int socket);
+  /// The address that the program believes it has bound; false: it is not ours.
+  bool believed(int socket, sockaddr* address, socklen_t* size) const;
+
+  /// A message of the flight controller: to all our sockets.
+  void deliver(std::span<const std::uint8_t> bytes);
+  /// If an address is that of the sender of `deliver`: replaces it by the flight controller's.
+  void believe(sockaddr* address, const socklen_t* size) const;
+  /// Where to connect a socket in place of a flight controller.
+  const sockaddr_in& own() const { return own_; }
+
+ private:
+  static constexpr std::size_t kSockets = 4096;
+  /// 0: not ours.
+  std::array<std::atomic<std::uint16_t>, kSockets> bound_{};  // by descriptor: the port believed
+  std::atomic<int> count_ = 0;
+  int sender_ = -1;
+  sockaddr_in own_{};
+};
+
+}  // namespace tether::as_is

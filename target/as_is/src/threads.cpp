@@ -1,0 +1,70 @@
+#include "threads.h"
+
+#include <charconv>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <dirent.h>
+#include <fcntl.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+namespace tether::as_is {
+namespace {
+
+/// A file of /proc, whole.
+bool read_file(const char* path, char* text, std::size_t size) {
+  const int file = ::open(path, O_RDONLY | O_CLOEXEC);
+  if (file < 0) return false;
+  const ssize_t got = ::read(file, text, size - 1);
+  ::close(file);
+  if (got <= 0) return false;
+  text[got] = '\0';
+  return true;
+}
+
+// Sleeping, stopped by a debugger, or dead: nothing happens there until somebody else acts.
+bool is_waiting(char state) {
+  return std::strchr("SZXxtT", state) != nullptr;
+}
+
+/// How often all other threads have been scheduled; none: one of them does not wait.
+std::optional<unsigned long> turns_of_others() {
+  DIR* const folder = ::opendir("/proc/self/task");
+  if (folder == nullptr) return std::nullopt;
+  const std::string self = std::to_string(::syscall(SYS_gettid));
+  std::optional<unsigned long> turns = 0;
+  while (const dirent* entry = ::readdir(folder)) {
+    if (entry->d_name[0] == '.' || self == entry->d_name) continue;
+    char path[64], text[512];
+    std::snprintf(path, sizeof path, "/proc/self/task/%.20s/stat", entry->d_name);
+    if (!read_file(path, text, sizeof text)) continue;  // it has ended
+    const char* after_name = std::strrchr(text, ')');
+    if (after_name == nullptr || !is_waiting(after_name[2])) {
+      turns.reset();
+      break;
+    }
+    std::snprintf(path, sizeof path, "/proc/self/task/%.20s/schedstat", entry->d_name);
+    if (!read_file(path, text, sizeof text)) continue;
+    const char* last = std::strrchr(text, ' ');
+    if (last != nullptr) *turns += std::strtoul(last, nullptr, 10);
+  }
+  ::closedir(folder);
+  return turns;
+}
+
+}  // namespace
+
+std::atomic<int> Threads::count_ = 1;
+
+bool Threads::are_others_waiting() {
+  if (!are_several()) return true;
+  const auto first = turns_of_others();
+  return first && turns_of_others() == first;
+}
+
+}  // namespace tether::as_is

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+
+#include <sys/types.h>
+
+namespace tether::as_is {
+
+/// The threads of this process: whether all but the calling one wait.
+class Threads {
+ public:
+  /// Whether no other thread of the program runs, or could. Looks at the kernel's states of all of
+  /// them, twice, unless there is one only.
+  bool are_others_waiting();
+
+  /// A thread of the program begins, or ends.
+  static void began() { ++count_; }
+  static void ended() { --count_; }
+  static bool are_several() { return count_.load() > 1; }
+
+ private:
+  static std::atomic<int> count_;
+};
+
+}  // namespace tether::as_is
