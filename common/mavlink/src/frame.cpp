@@ -10,7 +10,7 @@ namespace tether::mavlink {
 namespace {
 
 constexpr std::uint8_t kMagic1 = 0xFE, kMagic2 = 0xFD;
-constexpr std::size_t kHeader1 = 6, kHeader2 = 10, kChecksum = 2, kSignature = 13;
+constexpr std::size_t kHeader1 = 6, kHeader2 = 10, kChecksum = 2;
 constexpr std::uint8_t kIsSigned = 1;
 
 std::uint16_t checksum(std::span<const std::uint8_t> without_magic, std::uint8_t crc_extra) {
@@ -22,14 +22,15 @@ std::uint16_t checksum(std::span<const std::uint8_t> without_magic, std::uint8_t
 
 }  // namespace
 
-std::vector<std::uint8_t> encode(const Message& message, Address from, std::uint8_t sequence) {
+std::vector<std::uint8_t> encode(const Message& message, Address from, std::uint8_t sequence,
+                                 Signer* signer) {
   const auto payload = message.payload();
   std::size_t length = payload.size();
   while (length > 1 && payload[length - 1] == 0) --length;
   const std::uint32_t id = message.type().id;
   std::vector<std::uint8_t> bytes = {kMagic2,
                                      static_cast<std::uint8_t>(length),
-                                     0,
+                                     signer == nullptr ? std::uint8_t{0} : kIsSigned,
                                      0,
                                      sequence,
                                      from.system,
@@ -41,6 +42,10 @@ std::vector<std::uint8_t> encode(const Message& message, Address from, std::uint
   const std::uint16_t crc = checksum(std::span(bytes).subspan(1), message.type().crc_extra);
   bytes.push_back(static_cast<std::uint8_t>(crc & 0xFFU));
   bytes.push_back(static_cast<std::uint8_t>(crc >> 8U));
+  if (signer != nullptr) {
+    const auto signature = signer->sign(bytes);
+    bytes.insert(bytes.end(), signature.begin(), signature.end());
+  }
   return bytes;
 }
 
@@ -73,7 +78,7 @@ Decoder::Outcome Decoder::take(std::span<const std::uint8_t> bytes, std::size_t&
     ++counts_.incompatible;
     return Outcome::kSkip;
   }
-  const std::size_t whole = header + length + kChecksum + (is_signed ? kSignature : 0);
+  const std::size_t whole = header + length + kChecksum + (is_signed ? kSignatureBytes : 0);
   if (bytes.size() < whole) return Outcome::kWait;
   const std::uint32_t id =
       is_2 ? bytes[7] | std::uint32_t{bytes[8]} << 8U | std::uint32_t{bytes[9]} << 16U : bytes[5];
@@ -95,10 +100,24 @@ Decoder::Outcome Decoder::take(std::span<const std::uint8_t> bytes, std::size_t&
               .version = is_2 ? 2 : 1,
               .is_signed = is_signed,
               .message = Message(*type)};
+  used = whole;
+  if (!is_authentic(bytes.first(whole), frame)) return Outcome::kSkip;
   frame.message.set_payload(bytes.subspan(header, length));
   frames.push_back(std::move(frame));
-  used = whole;
   return Outcome::kFrame;
+}
+
+bool Decoder::is_authentic(std::span<const std::uint8_t> bytes, const Frame& frame) {
+  if (!checker_) return true;
+  if (!frame.is_signed) {
+    ++counts_.not_signed;
+    return false;
+  }
+  using Verdict = SignatureChecker::Verdict;
+  const Verdict verdict = checker_->check(bytes, frame.from.system, frame.from.component);
+  if (verdict == Verdict::kWrong) ++counts_.wrong_signatures;
+  if (verdict == Verdict::kOld) ++counts_.old_signatures;
+  return verdict == Verdict::kRight;
 }
 
 }  // namespace tether::mavlink

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include <tether/mavlink/message.h>
+#include <tether/mavlink/signing.h>
 
 namespace tether::mavlink {
 
@@ -23,8 +25,10 @@ struct Frame {
   Message message;
 };
 
-/// A frame of MAVLink 2, without a signature: zeros at the end of the payload are left out.
-std::vector<std::uint8_t> encode(const Message& message, Address from, std::uint8_t sequence);
+/// A frame of MAVLink 2, with a signature if there is a signer. Zeros at the end of the payload are
+/// left out.
+std::vector<std::uint8_t> encode(const Message& message, Address from, std::uint8_t sequence,
+                                 Signer* signer = nullptr);
 
 /// What was in a stream beside frames of the table.
 struct DecoderCounts {
@@ -32,12 +36,21 @@ struct DecoderCounts {
   std::uint64_t wrong_checksums = 0;  ///< of frames of the table
   std::uint64_t unknown = 0;          ///< frames of messages that are not in the table
   std::uint64_t incompatible = 0;     ///< frames with flags that are not known
+  // With a key:
+  std::uint64_t not_signed = 0;
+  std::uint64_t wrong_signatures = 0;
+  std::uint64_t old_signatures = 0;  ///< right, but of frames that were received before
 };
 
-/// Reads frames of MAVLink 1 and 2 from a stream of bytes, whatever these are. A signature is not
-/// checked. Not thread-safe.
+/// Reads frames of MAVLink 1 and 2 from a stream of bytes, whatever these are. Not thread-safe.
 class Decoder {
  public:
+  /// With a key, only frames that are signed with it are taken; without one, no signature is
+  /// checked.
+  explicit Decoder(const SigningKey* key = nullptr) {
+    if (key != nullptr) checker_.emplace(*key);
+  }
+
   /// More bytes, in any pieces. Returns the frames that they complete, in order.
   std::vector<Frame> push(std::span<const std::uint8_t> bytes);
   const DecoderCounts& counts() const { return counts_; }
@@ -45,9 +58,11 @@ class Decoder {
  private:
   enum class Outcome { kFrame, kWait, kSkip };
   Outcome take(std::span<const std::uint8_t> bytes, std::size_t& used, std::vector<Frame>& frames);
+  bool is_authentic(std::span<const std::uint8_t> bytes, const Frame& frame);
 
   std::vector<std::uint8_t> rest_;  // of what may become a frame
   DecoderCounts counts_;
+  std::optional<SignatureChecker> checker_;
 };
 
 }  // namespace tether::mavlink

@@ -1,0 +1,151 @@
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <tether/mavlink/frame.h>
+#include <tether/mavlink/signing.h>
+
+namespace tether::mavlink {
+namespace {
+
+const SigningKey kKey = key_of_passphrase("a secret");
+constexpr std::uint64_t kNow = 0x1234'5678'9ABC;
+
+std::vector<std::uint8_t> signed_ping(Signer& signer, Address from = {1, 1}) {
+  return encode(Message("PING").set("seq", 5), from, 9, &signer);
+}
+
+TEST(SigningKey, OfAPassphraseIsItsSha256) {
+  const SigningKey key = key_of_passphrase("abc");
+  EXPECT_EQ(key[0], 0xBA);
+  EXPECT_EQ(key[31], 0xAD);
+}
+
+TEST(SigningKey, OfAFileIsItsBytesOrItsHexadecimalDigits) {
+  std::string bytes(32, '\0'), digits;
+  for (std::size_t i = 0; i < 32; ++i) {
+    bytes[i] = static_cast<char>(i * 7);
+    digits += "0123456789abcdef"[i * 7 % 256 / 16];
+    digits += "0123456789ABCDEF"[i * 7 % 16];
+  }
+  const auto key = key_of_file(bytes);
+  ASSERT_TRUE(key.ok());
+  EXPECT_EQ((*key)[31], 31 * 7);
+  for (const std::string& text : {digits, digits + "\n", " \t" + digits + "\r\n"}) {
+    ASSERT_TRUE(key_of_file(text).ok()) << text;
+    EXPECT_EQ(*key_of_file(text), *key) << text;
+  }
+}
+
+TEST(SigningKey, RefusesOtherFiles) {
+  for (const std::string& text :
+       {std::string(), std::string("\n\n"), std::string(31, 'a'), std::string(33, 'a'),
+        std::string(63, 'a'), std::string(65, 'a'), std::string(63, 'a') + "g",
+        std::string(62, 'a') + "-1", std::string(62, 'a') + "0x"}) {
+    const auto key = key_of_file(text);
+    ASSERT_FALSE(key.ok()) << text;
+    EXPECT_EQ(key.failure().kind, Failure::Kind::kInvalid);
+    EXPECT_NE(key.failure().message.find(std::to_string(text.size()) + " bytes"), text.npos);
+  }
+}
+
+TEST(Signer, FramesHaveTheFlagTheLinkAndTheTimestamp) {
+  Signer signer(kKey, 3, kNow);
+  const auto bytes = signed_ping(signer);
+  Signer again(kKey, 3, kNow);
+  EXPECT_EQ(bytes, signed_ping(again));
+  EXPECT_EQ(bytes[2], 1);  // the flag of signed frames, which the checksum covers
+  const auto end = std::span(bytes).last(kSignatureBytes);
+  const std::uint8_t expected[] = {3, 0xBC, 0x9A, 0x78, 0x56, 0x34, 0x12};
+  EXPECT_TRUE(std::ranges::equal(end.first(7), expected));
+}
+
+TEST(Signer, TimestampsIncrease) {
+  Signer signer(kKey, 0, 100);
+  const auto low_byte = [&] { return *(signed_ping(signer).end() - 12); };
+  EXPECT_EQ(low_byte(), 100);
+  EXPECT_EQ(low_byte(), 101);
+  signer.advance_to(50);
+  EXPECT_EQ(low_byte(), 102);
+  signer.advance_to(200);
+  EXPECT_EQ(low_byte(), 200);
+}
+
+TEST(SignedDecoder, TakesFramesOfTheSameKeyOnly) {
+  const SigningKey other_key = key_of_passphrase("another secret");
+  Signer signer(kKey, 0, kNow), other(other_key, 0, kNow);
+  Decoder decoder(&kKey);
+  EXPECT_TRUE(decoder.push(signed_ping(other)).empty());
+  EXPECT_EQ(decoder.counts().wrong_signatures, 1U);
+  const auto frames = decoder.push(signed_ping(signer));
+  ASSERT_EQ(frames.size(), 1U);
+  EXPECT_TRUE(frames[0].is_signed);
+  EXPECT_EQ(frames[0].message.integer("seq"), 5);
+  // Without a key, signatures are not looked at.
+  EXPECT_EQ(Decoder().push(signed_ping(other)).size(), 1U);
+}
+
+TEST(SignedDecoder, RefusesEachChangedBitOfASignature) {
+  Signer signer(kKey, 0, kNow);
+  const auto bytes = signed_ping(signer);
+  for (std::size_t bit = 0; bit < 8 * kSignatureBytes; ++bit) {
+    auto changed = bytes;
+    changed[bytes.size() - 1 - bit / 8] ^= static_cast<std::uint8_t>(1U << bit % 8);
+    Decoder decoder(&kKey);
+    EXPECT_TRUE(decoder.push(changed).empty()) << bit;
+    EXPECT_EQ(decoder.counts().wrong_signatures, 1U) << bit;
+    // What was refused changes nothing.
+    EXPECT_EQ(decoder.push(bytes).size(), 1U) << bit;
+  }
+}
+
+TEST(SignedDecoder, RefusesWhatIsNotSigned) {
+  Decoder decoder(&kKey);
+  EXPECT_TRUE(decoder.push(encode(Message("PING"), {1, 1}, 0)).empty());
+  EXPECT_EQ(decoder.counts().not_signed, 1U);
+}
+
+TEST(SignedDecoder, RefusesAFrameThatIsReplayed) {
+  Signer signer(kKey, 0, kNow);
+  const auto first = signed_ping(signer);
+  const auto second = signed_ping(signer);
+  Decoder decoder(&kKey);
+  EXPECT_EQ(decoder.push(first).size(), 1U);
+  EXPECT_TRUE(decoder.push(first).empty());
+  EXPECT_EQ(decoder.push(second).size(), 1U);
+  EXPECT_TRUE(decoder.push(first).empty());
+  EXPECT_EQ(decoder.counts().old_signatures, 2U);
+}
+
+// Each (link, system, component) has its own timestamps, and one that is new is not far behind.
+TEST(SignedDecoder, ComparesTimestampsOfOneStreamOnly) {
+  Decoder decoder(&kKey);
+  Signer signer(kKey, 0, kNow);
+  EXPECT_EQ(decoder.push(signed_ping(signer)).size(), 1U);
+  for (const auto& [link, from] :
+       {std::pair<std::uint8_t, Address>{1, {1, 1}}, {0, {2, 1}}, {0, {1, 2}}}) {
+    Signer late(kKey, link, kNow - kTimestampsPerMinute - 1);
+    EXPECT_TRUE(decoder.push(signed_ping(late, from)).empty());
+    EXPECT_EQ(decoder.push(signed_ping(late, from)).size(), 1U);
+  }
+}
+
+TEST(SignedDecoder, FindsFramesInAnyPiecesAndBetweenGarbage) {
+  Signer signer(kKey, 0, kNow);
+  std::vector<std::uint8_t> stream;
+  for (std::uint8_t i = 0; i < 20; ++i) {
+    stream.insert(stream.end(), i % 4, std::uint8_t(0x7F + i));
+    const auto frame = signed_ping(signer);
+    stream.insert(stream.end(), frame.begin(), frame.end());
+  }
+  Decoder whole(&kKey), pieces(&kKey);
+  EXPECT_EQ(whole.push(stream).size(), 20U);
+  std::size_t frames = 0;
+  for (const std::uint8_t byte : stream) frames += pieces.push({&byte, 1}).size();
+  EXPECT_EQ(frames, 20U);
+}
+
+}  // namespace
+}  // namespace tether::mavlink
