@@ -231,6 +231,10 @@ constexpr Row kRows[] = {
      "rollspeed:f(rad/s) pitchspeed:f(rad/s) yawspeed:f(rad/s) pose_covariance:f[21] "
      "velocity_covariance:f[21] frame_id:u8 child_frame_id:u8 | reset_counter:u8 "
      "estimator_type:u8 quality:i8(%)"},
+    {332, "TRAJECTORY_REPRESENTATION_WAYPOINTS",
+     "time_usec:u64(us) pos_x:f[5](m) pos_y:f[5](m) pos_z:f[5](m) vel_x:f[5](m/s) "
+     "vel_y:f[5](m/s) vel_z:f[5](m/s) acc_x:f[5](m/s/s) acc_y:f[5](m/s/s) acc_z:f[5](m/s/s) "
+     "pos_yaw:f[5](rad) vel_yaw:f[5](rad/s) command:u16[5] valid_points:u8"},
     {375, "ACTUATOR_OUTPUT_STATUS", "time_usec:u64(us) active:u32 actuator:f[32]"},
     {385, "TUNNEL",
      "payload_type:u16 target_system:u8 target_component:u8 payload_length:u8 payload:u8[128]"},
