@@ -51,13 +51,22 @@ std::vector<std::uint8_t> encode(const Message& message, Address from, std::uint
 
 std::vector<Frame> Decoder::push(std::span<const std::uint8_t> bytes) {
   rest_.insert(rest_.end(), bytes.begin(), bytes.end());
+  return take_all(true);
+}
+
+std::vector<Frame> Decoder::push_datagram(std::span<const std::uint8_t> bytes) {
+  rest_.assign(bytes.begin(), bytes.end());
+  return take_all(false);
+}
+
+std::vector<Frame> Decoder::take_all(bool waits) {
   std::vector<Frame> frames;
   std::span<const std::uint8_t> left = rest_;
   while (!left.empty()) {
     std::size_t used = 1;
-    const Outcome outcome = take(left, used, frames);
-    if (outcome == Outcome::kWait) break;
-    if (outcome == Outcome::kSkip) counts_.skipped_bytes += used;
+    const Outcome outcome = take(left, waits, used, frames);
+    if (outcome == Outcome::kWait && waits) break;
+    if (outcome != Outcome::kFrame) counts_.skipped_bytes += used;
     left = left.subspan(used);
   }
   rest_.erase(rest_.begin(), rest_.end() - static_cast<std::ptrdiff_t>(left.size()));
@@ -65,8 +74,9 @@ std::vector<Frame> Decoder::push(std::span<const std::uint8_t> bytes) {
 }
 
 // What begins at the first byte. A frame whose checksum is wrong may be no frame, so only its first
-// byte is skipped; of a message that is not in the table, the checksum cannot be known.
-Decoder::Outcome Decoder::take(std::span<const std::uint8_t> bytes, std::size_t& used,
+// byte is skipped. Of a message that is not in the table, the checksum cannot be known: it is one
+// if another frame begins where it ends, or its datagram ends there too.
+Decoder::Outcome Decoder::take(std::span<const std::uint8_t> bytes, bool waits, std::size_t& used,
                                std::vector<Frame>& frames) {
   const bool is_2 = bytes[0] == kMagic2;
   if (!is_2 && bytes[0] != kMagic1) return Outcome::kSkip;
@@ -84,6 +94,9 @@ Decoder::Outcome Decoder::take(std::span<const std::uint8_t> bytes, std::size_t&
       is_2 ? bytes[7] | std::uint32_t{bytes[8]} << 8U | std::uint32_t{bytes[9]} << 16U : bytes[5];
   const MessageType* type = find_type(id);
   if (type == nullptr) {
+    const bool ends = bytes.size() == whole;
+    if (ends && waits) return Outcome::kWait;
+    if (!ends && bytes[whole] != kMagic1 && bytes[whole] != kMagic2) return Outcome::kSkip;
     ++counts_.unknown;
     used = whole;
     return Outcome::kSkip;

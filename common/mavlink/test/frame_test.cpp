@@ -1,3 +1,5 @@
+#include "crc.h"
+
 #include <algorithm>
 #include <cstring>
 #include <random>
@@ -119,12 +121,110 @@ TEST(Decoder, CountsWhatItDoesNotTake) {
   unknown[7] = 0xEE;
   unknown[8] = 0xEE;
   EXPECT_TRUE(decoder.push(unknown).empty());
-  EXPECT_EQ(decoder.counts().unknown, 1U);
   auto flags = heartbeat();
   flags[2] = 0x80;
   EXPECT_TRUE(decoder.push(flags).empty());
+  EXPECT_EQ(decoder.counts().unknown, 1U);  // known when the next frame begins
   EXPECT_EQ(decoder.counts().incompatible, 1U);
   EXPECT_EQ(decoder.push(heartbeat(8)).size(), 1U);
+  auto damaged = heartbeat();
+  damaged[12] ^= 1U;
+  EXPECT_TRUE(decoder.push(damaged).empty());
+  EXPECT_EQ(decoder.counts().wrong_checksums, 1U);
+  EXPECT_EQ(decoder.push(heartbeat(9)).size(), 1U);
+}
+
+// Garbage that looks like the beginning of a frame of a message that nobody knows.
+TEST(Decoder, GarbageHidesNoFrameThatDoesNotBeginWhereItSeemsToEnd) {
+  const std::size_t size = heartbeat().size();
+  for (unsigned length = 0; length < 256; ++length) {
+    std::vector<std::uint8_t> stream = {
+        0xFD, static_cast<std::uint8_t>(length), 0, 0, 0, 0, 0, 0xEE, 0xEE, 0xEE};
+    if ((length + 2) % size == 0) continue;
+    for (std::uint8_t i = 0; i < 20; ++i) {
+      const auto frame = heartbeat(i);
+      stream.insert(stream.end(), frame.begin(), frame.end());
+    }
+    Decoder decoder;
+    EXPECT_EQ(decoder.push(stream).size(), 20U) << length;
+    EXPECT_EQ(decoder.counts().skipped_bytes, 10U) << length;
+  }
+}
+
+TEST(Decoder, CountsAnUnknownMessageOfADatagram) {
+  Decoder decoder;
+  auto unknown = heartbeat();
+  unknown[9] = 0xEE;
+  EXPECT_TRUE(decoder.push_datagram(unknown).empty());
+  EXPECT_EQ(decoder.counts().unknown, 1U);
+  EXPECT_EQ(decoder.counts().skipped_bytes, unknown.size());
+}
+
+TEST(Decoder, AHalfFrameOfAStreamIsCompletedByTheNextBytes) {
+  const auto frame = heartbeat(5);
+  for (std::size_t half = 0; half < frame.size(); ++half) {
+    Decoder decoder;
+    EXPECT_TRUE(decoder.push(std::span(frame).first(half)).empty());
+    EXPECT_EQ(decoder.push(std::span(frame).subspan(half)).size(), 1U) << half;
+    EXPECT_EQ(decoder.counts().skipped_bytes, 0U);
+  }
+}
+
+TEST(Decoder, AHalfFrameOfADatagramDelaysNoOther) {
+  const auto frame = heartbeat(5);
+  Decoder decoder;
+  for (std::size_t half = 1; half < frame.size(); ++half) {
+    EXPECT_TRUE(decoder.push_datagram(std::span(frame).first(half)).empty());
+    EXPECT_EQ(decoder.push_datagram(frame).size(), 1U) << half;
+    // Nor one behind it in the same datagram.
+    std::vector<std::uint8_t> both(frame.begin(),
+                                   frame.begin() + static_cast<std::ptrdiff_t>(half));
+    both.insert(both.end(), frame.begin(), frame.end());
+    EXPECT_EQ(decoder.push_datagram(both).size(), 1U) << half;
+  }
+}
+
+// A newer peer may have extensions that the table lacks: they are ignored. An older one has none.
+TEST(Decoder, TakesPayloadsOfOtherLengths) {
+  Message message("HEARTBEAT");
+  message.set("type", 2);
+  const auto longer = [](const Message& m, std::size_t length) {
+    auto bytes = encode(m, {1, 1}, 0);
+    bytes.resize(10);
+    const auto payload = m.payload();
+    bytes.insert(bytes.end(), payload.begin(), payload.end());
+    bytes.resize(10 + length, 0xAB);
+    bytes[1] = static_cast<std::uint8_t>(length);
+    Crc crc;
+    crc.add(std::span(bytes).subspan(1));
+    crc.add(m.type().crc_extra);
+    bytes.push_back(static_cast<std::uint8_t>(crc.value() & 0xFFU));
+    bytes.push_back(static_cast<std::uint8_t>(crc.value() >> 8U));
+    return bytes;
+  };
+  Decoder decoder;
+  for (const std::size_t length : {0U, 5U, 9U, 12U, 255U}) {
+    const auto frames = decoder.push(longer(message, length));
+    ASSERT_EQ(frames.size(), 1U) << length;
+    EXPECT_EQ(frames[0].message.payload().size(), 9U);
+    EXPECT_EQ(frames[0].message.integer("type"), length > 4 ? 2 : 0) << length;
+  }
+}
+
+TEST(Decoder, RandomBytesAreNoFrames) {
+  std::mt19937 random(11);
+  Decoder decoder;
+  std::size_t frames = 0;
+  for (int i = 0; i < 2000; ++i) {
+    std::vector<std::uint8_t> piece(1 + random() % 100);
+    for (auto& byte : piece) byte = random() % 8 == 0 ? 0xFD : static_cast<std::uint8_t>(random());
+    frames += decoder.push(piece).size();
+  }
+  EXPECT_LE(frames, 1U);  // one in 65,536 has the right checksum
+  // It has not lost its way: at most the longest frame is awaited.
+  std::size_t later = 0;
+  for (std::uint8_t i = 0; i < 40; ++i) later += decoder.push(heartbeat(i)).size();
+  EXPECT_GE(later, 20U);
 }
 
 }  // namespace

@@ -1,4 +1,6 @@
+#include <cmath>
 #include <numbers>
+#include <random>
 
 #include <gtest/gtest.h>
 
@@ -39,6 +41,34 @@ TEST(Frames, AttitudesTurnVectorsAlike) {
         EXPECT_LT(norm(expected - got), 1e-12);
         EXPECT_LT(norm(rotate(enu_from_ned(q_NED), v_flu) - rotate(q_WB, v_flu)), 1e-12);
       }
+}
+
+// The heading of the quaternion is that of the yaw alone, at any tilt that has a heading.
+TEST(Frames, YawsOfAttitudesAreYaws) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> yaws(-kPi, kPi), tilts(-1.4, 1.4);
+  for (int i = 0; i < 500; ++i) {
+    const double yaw = yaws(random);
+    const Quat q_NED = ned_from_enu(uav::from_rpy(tilts(random), tilts(random), yaw));
+    const double turned = uav::yaw_rad(q_NED) - ned_from_enu_yaw(yaw);
+    EXPECT_NEAR(std::remainder(turned, 2.0 * kPi), 0.0, 1e-9);
+    EXPECT_NEAR(std::remainder(enu_from_ned_yaw(ned_from_enu_yaw(yaw)) - yaw, 2.0 * kPi), 0.0,
+                1e-12);
+  }
+}
+
+// Rotations of vectors between the frames keep lengths and the sense of cross products.
+TEST(Frames, AreRightHanded) {
+  std::mt19937 random(6);
+  std::normal_distribution<double> normal;
+  for (int i = 0; i < 100; ++i) {
+    const Vec3 a{normal(random), normal(random), normal(random)};
+    const Vec3 b{normal(random), normal(random), normal(random)};
+    EXPECT_LT(norm(ned_from_enu(cross(a, b)) - cross(ned_from_enu(a), ned_from_enu(b))), 1e-12);
+    EXPECT_LT(norm(frd_from_flu(cross(a, b)) - cross(frd_from_flu(a), frd_from_flu(b))), 1e-12);
+    EXPECT_EQ(enu_from_ned(ned_from_enu(a)), a);
+    EXPECT_EQ(flu_from_frd(frd_from_flu(a)), a);
+  }
 }
 
 TEST(Frames, AnUprightVehicleThatHeadsNorthIsTheIdentity) {

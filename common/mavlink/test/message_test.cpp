@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -38,6 +39,24 @@ TEST(Message, HasTextsAndArrays) {
   attitude.set("q", 0.5, 3);
   EXPECT_EQ(attitude.number("q", 3), 0.5);
   EXPECT_EQ(attitude.number("q", 0), 0.0);
+}
+
+TEST(Message, FieldsAreBesideEachOther) {
+  for (const MessageType& type : message_types()) {
+    Message m(type);
+    const auto for_each = [&](auto visit) {
+      int value = 0;
+      for (const Field& field : type.fields)
+        for (std::size_t i = 0; i < field.count; ++i) visit(field.name, i, value = value % 126 + 1);
+    };
+    for_each([&](auto name, std::size_t i, int value) { m.set(name, value, i); });
+    for_each([&](auto name, std::size_t i, int value) {
+      EXPECT_EQ(m.integer(name, i), value) << type.name << " " << name;
+      EXPECT_EQ(m.number(name, i), value) << type.name << " " << name;
+    });
+    EXPECT_EQ(std::ranges::count(m.payload(), 0) > 0,
+              std::ranges::any_of(type.fields, [](const Field& f) { return size_of(f.type) > 1; }));
+  }
 }
 
 TEST(MessageDeathTest, AFieldThatTheTypeLacksIsAFaultOfTheProgram) {

@@ -62,6 +62,20 @@ TEST(Signer, FramesHaveTheFlagTheLinkAndTheTimestamp) {
   EXPECT_TRUE(std::ranges::equal(end.first(7), expected));
 }
 
+// A frame that node-mavlink 2.3.0 signed with this passphrase.
+TEST(Signer, MakesTheSameFrameAsAnotherImplementation) {
+  const std::vector<std::uint8_t> expected = {0xFD, 0x09, 0x01, 0x00, 0x05, 0x01, 0x01, 0x00, 0x00,
+                                              0x00, 0x07, 0x00, 0x00, 0x00, 0x02, 0x0C, 0x51, 0x04,
+                                              0x03, 0x7B, 0xEE, 0x03, 0x00, 0xE0, 0x3C, 0xD6, 0x92,
+                                              0x1F, 0x4D, 0x6F, 0x0F, 0xD7, 0xB9, 0x35};
+  Signer signer(kKey, 3, 34'715'520'000'000);
+  Message heartbeat("HEARTBEAT");
+  heartbeat.set("custom_mode", 7).set("type", 2).set("autopilot", 12).set("base_mode", 81);
+  heartbeat.set("system_status", 4).set("mavlink_version", 3);
+  EXPECT_EQ(encode(heartbeat, {1, 1}, 5, &signer), expected);
+  EXPECT_EQ(Decoder(&kKey).push(expected).size(), 1U);
+}
+
 TEST(Signer, TimestampsIncrease) {
   Signer signer(kKey, 0, 100);
   const auto low_byte = [&] { return *(signed_ping(signer).end() - 12); };

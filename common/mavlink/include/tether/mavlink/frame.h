@@ -53,11 +53,16 @@ class Decoder {
 
   /// More bytes, in any pieces. Returns the frames that they complete, in order.
   std::vector<Frame> push(std::span<const std::uint8_t> bytes);
+  /// A datagram, in which frames are whole: nothing waits for bytes of the next one. For one
+  /// decoder, either this or `push`.
+  std::vector<Frame> push_datagram(std::span<const std::uint8_t> bytes);
   const DecoderCounts& counts() const { return counts_; }
 
  private:
   enum class Outcome { kFrame, kWait, kSkip };
-  Outcome take(std::span<const std::uint8_t> bytes, std::size_t& used, std::vector<Frame>& frames);
+  std::vector<Frame> take_all(bool waits);
+  Outcome take(std::span<const std::uint8_t> bytes, bool waits, std::size_t& used,
+               std::vector<Frame>& frames);
   bool is_authentic(std::span<const std::uint8_t> bytes, const Frame& frame);
 
   std::vector<std::uint8_t> rest_;  // of what may become a frame
