@@ -26,22 +26,22 @@ class Message {
   bool is(std::string_view name) const { return type_->name == name; }
 
   /// A value, of any type but 64-bit integers exactly.
-  double number(std::string_view field, std::size_t i = 0) const;
+  double number(std::string_view name, std::size_t i = 0) const;
   /// Of an integer, exactly (64 bits without a sign as two's complement); others are rounded.
-  std::int64_t integer(std::string_view field, std::size_t i = 0) const;
+  std::int64_t integer(std::string_view name, std::size_t i = 0) const;
   /// Of an array of characters, up to the first NUL.
-  std::string text(std::string_view field) const;
+  std::string text(std::string_view name) const;
 
   /// Integers are rounded and brought into their range; of NaN, they are 0.
-  Message& set(std::string_view field, std::floating_point auto value, std::size_t i = 0) {
-    return set_number(field, value, i);
+  Message& set(std::string_view name, std::floating_point auto value, std::size_t i = 0) {
+    return set_number(name, value, i);
   }
-  Message& set(std::string_view field, std::integral auto value, std::size_t i = 0) {
-    return set_integer(field, static_cast<std::int64_t>(value), std::is_unsigned_v<decltype(value)>,
+  Message& set(std::string_view name, std::integral auto value, std::size_t i = 0) {
+    return set_integer(name, static_cast<std::int64_t>(value), std::is_unsigned_v<decltype(value)>,
                        i);
   }
   /// Cut to the array's length.
-  Message& set_text(std::string_view field, std::string_view text);
+  Message& set_text(std::string_view name, std::string_view text);
 
   /// Of the type's length, little-endian.
   std::span<const std::uint8_t> payload() const { return payload_; }
@@ -49,9 +49,9 @@ class Message {
   void set_payload(std::span<const std::uint8_t> bytes);
 
  private:
-  const Field& find(std::string_view field, std::size_t i) const;
-  Message& set_number(std::string_view field, double value, std::size_t i);
-  Message& set_integer(std::string_view field, std::int64_t value, bool is_unsigned, std::size_t i);
+  const Field& find(std::string_view name, std::size_t i) const;
+  Message& set_number(std::string_view name, double value, std::size_t i);
+  Message& set_integer(std::string_view name, std::int64_t value, bool is_unsigned, std::size_t i);
   template <class T>
   T load(const Field& field, std::size_t i) const;
   template <class T>
