@@ -80,7 +80,7 @@ install_packages() {
   as_root env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends "${missing[@]}"
 }
 
-# The record's independent reader (tests/system/packages/mcap) runs on Node.js, 18 or later, whoever packaged it.
+# The independent peers for records and MAVLink (tests/system/packages) run on Node.js, 18 or later, whoever packaged it.
 command -v node >/dev/null || packages_test+=(nodejs)
 command -v npm >/dev/null || packages_test+=(npm)
 
