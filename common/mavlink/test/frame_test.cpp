@@ -148,6 +148,11 @@ TEST(Decoder, GarbageHidesNoFrameThatDoesNotBeginWhereItSeemsToEnd) {
     Decoder decoder;
     EXPECT_EQ(decoder.push(stream).size(), 20U) << length;
     EXPECT_EQ(decoder.counts().skipped_bytes, 10U) << length;
+    // Whatever the pieces.
+    Decoder in_bytes;
+    std::size_t frames = 0;
+    for (const std::uint8_t& byte : stream) frames += in_bytes.push({&byte, 1}).size();
+    EXPECT_EQ(frames, 20U) << length;
   }
 }
 
@@ -172,13 +177,13 @@ TEST(Decoder, AHalfFrameOfAStreamIsCompletedByTheNextBytes) {
 
 TEST(Decoder, AHalfFrameOfADatagramDelaysNoOther) {
   const auto frame = heartbeat(5);
+  const auto text = encode(Message("STATUSTEXT").set_text("text", std::string(50, 'x')), {1, 1}, 0);
   Decoder decoder;
   for (std::size_t half = 1; half < frame.size(); ++half) {
     EXPECT_TRUE(decoder.push_datagram(std::span(frame).first(half)).empty());
     EXPECT_EQ(decoder.push_datagram(frame).size(), 1U) << half;
     // Nor one behind it in the same datagram.
-    std::vector<std::uint8_t> both(frame.begin(),
-                                   frame.begin() + static_cast<std::ptrdiff_t>(half));
+    std::vector<std::uint8_t> both(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(half));
     both.insert(both.end(), frame.begin(), frame.end());
     EXPECT_EQ(decoder.push_datagram(both).size(), 1U) << half;
   }

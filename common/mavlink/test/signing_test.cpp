@@ -140,7 +140,8 @@ TEST(SignedDecoder, ComparesTimestampsOfOneStreamOnly) {
   EXPECT_EQ(decoder.push(signed_ping(signer)).size(), 1U);
   for (const auto& [link, from] :
        {std::pair<std::uint8_t, Address>{1, {1, 1}}, {0, {2, 1}}, {0, {1, 2}}}) {
-    Signer late(kKey, link, kNow - kTimestampsPerMinute - 1);
+    Signer late(kKey, link, kNow - kTimestampsPerMinute - 2);
+    EXPECT_TRUE(decoder.push(signed_ping(late, from)).empty());
     EXPECT_TRUE(decoder.push(signed_ping(late, from)).empty());
     EXPECT_EQ(decoder.push(signed_ping(late, from)).size(), 1U);
   }
