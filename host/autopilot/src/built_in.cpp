@@ -99,7 +99,7 @@ class BuiltIn : public FlightController {
       return {.setpoint = setting_down(), .sent = {}};
     if (!std::exchange(has_begun_, true)) begin();
     for (const Bytes& bytes : received)
-      for (const mavlink::Frame& frame : decoder_.push(bytes)) on_frame(frame);
+      for (const mavlink::Frame& frame : decoder_.push_datagram(bytes)) on_frame(frame);
     commander_.step();
     missions_.step(vehicle_.now, outbox_);
     parameter_port_.step(vehicle_.parameters, outbox_);
