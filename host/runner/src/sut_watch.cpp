@@ -53,7 +53,8 @@ std::optional<coordinator::ThreadStates> SutWatch::states(std::size_t uav) const
 }
 
 std::vector<campaign::Doubt> doubts_of(const coordinator::SutReport& sut,
-                                       const computer::Clock& clock, bool has_waits) {
+                                       const computer::Clock& clock, bool has_waits,
+                                       bool sees_waits) {
   using Kind = campaign::Doubt::Kind;
   std::vector<campaign::Doubt> doubts;
   const double et_s = to_seconds(sut.et.time_since_epoch());
@@ -64,10 +65,11 @@ std::vector<campaign::Doubt> doubts_of(const coordinator::SutReport& sut,
   const double waiting_s = to_seconds(looks.waiting);
   const bool counts = clock.counts_waiting();
   const double stretched_s = waiting_s * (counts ? clock.factor : std::max(1.0, clock.factor));
-  if (stretched_s > least_s && (counts || waiting_s > to_seconds(kLeastSeenWait)) && !has_waits)
+  const bool is_known = has_waits || sees_waits;
+  if (stretched_s > least_s && (counts || waiting_s > to_seconds(kLeastSeenWait)) && !is_known)
     doubts.push_back(counts ? campaign::Doubt{Kind::kStretchedWait, sut.uav, waiting_s}
                             : campaign::Doubt{Kind::kUnseenWait, sut.uav, stretched_s});
-  else if ((counts ? waiting_s : stretched_s) > to_seconds(kLeastSlightWait) && !has_waits)
+  else if ((counts ? waiting_s : stretched_s) > to_seconds(kLeastSlightWait) && !is_known)
     doubts.push_back({Kind::kSlightWait, sut.uav, std::min(1.0, stretched_s / et_s)});
   if (const double on_disk_s = to_seconds(looks.on_disk);
       on_disk_s > std::max(to_seconds(kLeastDiskDoubt), kDoubtfulDiskShare * et_s) && !has_waits &&

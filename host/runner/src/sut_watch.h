@@ -31,8 +31,10 @@ class SutWatch {
   std::map<std::size_t, pid_t> processes_;
 };
 
-/// What the looks at a SUT put in doubt. `clock`: of the SUT; `has_waits`: its replayed time does.
+/// What the looks at a SUT put in doubt. `clock`: of the SUT; `has_waits`: its replayed time does;
+/// `sees_waits`: its own side makes interactions of them, as with tether-exec --as-is.
 std::vector<campaign::Doubt> doubts_of(const coordinator::SutReport& sut,
-                                       const computer::Clock& clock, bool has_waits = false);
+                                       const computer::Clock& clock, bool has_waits = false,
+                                       bool sees_waits = false);
 
 }  // namespace tether::runner

@@ -365,7 +365,7 @@ std::vector<campaign::Doubt> TrialRun::doubts(const coordinator::RunReport& repo
   std::vector<campaign::Doubt> doubts = inputs_.replayed.doubts;
   for (std::size_t uav = 0; uav < report.suts.size(); ++uav)
     std::ranges::copy(doubts_of(report.suts[uav], computer_of(spec_.condition, uav).clock,
-                                inputs_.replayed.has_waits),
+                                inputs_.replayed.has_waits, spec_.scenario.uavs[uav].sut.is_as_is),
                       std::back_inserter(doubts));
   std::ranges::stable_sort(doubts, {}, &campaign::Doubt::kind);
   return doubts;

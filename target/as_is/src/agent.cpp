@@ -9,20 +9,39 @@
 #include <string>
 #include <utility>
 
+#include <poll.h>
+#include <sys/eventfd.h>
 #include <unistd.h>
 
 #include <tether/link/messages.h>
+#include <tether/os/clock.h>
 
 namespace tether::as_is {
 namespace {
 
-// How long a thread waits in real time before it looks again whether all others wait.
-constexpr Duration kSlice = std::chrono::microseconds(500);
+// How long a thread waits in real time before it looks again whether all others wait, first and
+// later. Whoever begins to wait last looks by itself; only waits that are not seen need this.
+constexpr Duration kFirstSlice = std::chrono::milliseconds(1);
+constexpr Duration kLongestSlice = std::chrono::milliseconds(4);
+constexpr Duration kShortestSlice = std::chrono::microseconds(20);
 // Of a wait without a deadline; then it begins again.
 constexpr Duration kForEver = std::chrono::hours(1);
 
 void say(const std::string& line) {
   std::fprintf(stderr, "tether: %s\n", line.c_str());
+}
+
+/// The eventfd that wakes the calling thread, with nothing in it.
+int wake_of_thread() {
+  struct Descriptor {
+    int fd = ::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+    Descriptor() = default;
+    ~Descriptor() { TETHER_REAL(close)(fd); }
+  };
+  thread_local const Descriptor kDescriptor;
+  std::uint64_t count = 0;
+  static_cast<void>(TETHER_REAL(read)(kDescriptor.fd, &count, sizeof count));
+  return kDescriptor.fd;
 }
 
 /// The program's own name: the last part of its path.
@@ -43,12 +62,13 @@ void Agent::start() {
   auto options = client::options_from_environment();
   if (!options) return say(options.failure().message + "; the program runs by itself");
   options->sut_name = program_name();
+  client::TimeSource* const source = options->time.get();
   auto vehicle = client::connect(std::move(*options));
   if (!vehicle) {
     say(vehicle.failure().message);
     ::_exit(3);
   }
-  instance_.store(new Agent(std::move(*vehicle)), std::memory_order_release);
+  instance_.store(new Agent(std::move(*vehicle), *source), std::memory_order_release);
 }
 
 // The run is over, or cannot go on: so is the program. It says nothing that the coordinator does
@@ -85,30 +105,68 @@ bool Agent::send(std::span<const std::uint8_t> bytes) {
   return false;
 }
 
+/// What the calling thread computes while it lives is not the program's, but for calls of the
+/// vehicle, in which the clock stands anyway.
+class Agent::Unpaid {
+ public:
+  explicit Unpaid(client::TimeSource& source) : source_(&source) { go_on(); }
+  ~Unpaid() { pause(); }
+  Unpaid(const Unpaid&) = delete;
+  Unpaid& operator=(const Unpaid&) = delete;
+
+  void go_on() { since_ = os::read_clock(CLOCK_THREAD_CPUTIME_ID); }
+  void pause() { source_->leave_out(os::read_clock(CLOCK_THREAD_CPUTIME_ID) - since_); }
+
+ private:
+  client::TimeSource* source_;
+  Duration since_{0};
+};
+
+// Until the deadline, if another thread computes all that time.
+Duration Agent::slice(std::optional<ExecTime> deadline, int looks) const {
+  const Duration longest = looks == 0 ? kFirstSlice : kLongestSlice;
+  if (!deadline) return longest;
+  const auto left = static_cast<std::int64_t>(static_cast<double>((*deadline - now()).count()) /
+                                              std::max(1.0, factor_));
+  return std::clamp(Duration(left), kShortestSlice, longest);
+}
+
 // Whether ET went on, or a message came. Nobody may be past its deadline: that one runs first.
-bool Agent::lead() {
+bool Agent::lead(Unpaid& unpaid) {
   const std::unique_lock leading(leading_, std::try_to_lock);
   if (!leading || !threads_.are_others_waiting()) return false;
   std::optional<ExecTime> earliest;
   {
     const std::lock_guard lock(waits_mutex_);
-    for (const auto& deadline : waits_)
+    for (const auto& [deadline, wake] : waits_)
       if (deadline) earliest = std::min(earliest.value_or(*deadline), *deadline);
   }
   if (earliest && *earliest <= now()) return false;
+  unpaid.pause();
   receive_until(earliest);
+  unpaid.go_on();
+  wake_due();
   return true;
 }
 
+void Agent::wake_due() {
+  constexpr std::uint64_t kOnce = 1;
+  const std::lock_guard lock(waits_mutex_);
+  for (const auto& [deadline, wake] : waits_)
+    if (deadline && *deadline <= now())
+      static_cast<void>(TETHER_REAL(write)(wake, &kOnce, sizeof kOnce));
+}
+
 bool Agent::wait(std::optional<ExecTime> deadline, const std::function<bool()>& is_ready,
-                 const std::function<void(Duration)>& block) {
+                 const Block& block) {
   const auto own = [&] {
     const std::lock_guard lock(waits_mutex_);
-    return waits_.insert(waits_.end(), deadline);
+    return waits_.insert(waits_.end(), {deadline, wake_of_thread()});
   }();
   bool ready = false;
-  while (!(ready = is_ready()) && !(deadline && now() >= *deadline))
-    if (!lead()) block(kSlice);
+  Unpaid unpaid(*source_);
+  for (int looks = 0; !(ready = is_ready()) && !(deadline && now() >= *deadline);)
+    if (!lead(unpaid)) block(slice(deadline, looks++), own->wake);
   const std::lock_guard lock(waits_mutex_);
   waits_.erase(own);
   return ready;
@@ -117,9 +175,10 @@ bool Agent::wait(std::optional<ExecTime> deadline, const std::function<bool()>& 
 void Agent::sleep_until(ExecTime deadline) {
   wait(
       deadline, [] { return false; },
-      [](Duration slice) {
+      [](Duration slice, int wake) {
+        pollfd fd{wake, POLLIN, 0};
         const timespec time{0, static_cast<long>(slice.count())};
-        TETHER_REAL(nanosleep)(&time, nullptr);
+        TETHER_REAL(ppoll)(&fd, 1, &time, nullptr);
       });
 }
 

@@ -37,10 +37,12 @@ class Agent {
 
   ExecTime now() const { return vehicle_->now(); }
 
-  /// Waits until `is_ready`, or the deadline (none: for ever). `block(slice)` waits for the same in
-  /// real time, for at most so long. False: the deadline came first.
+  /// Waits until `is_ready`, or the deadline (none: for ever). `block` waits for the same in real
+  /// time, for at most so long, and if it can until the descriptor can be read. False: the deadline
+  /// came first.
+  using Block = std::function<void(Duration slice, int wake)>;
   bool wait(std::optional<ExecTime> deadline, const std::function<bool()>& is_ready,
-            const std::function<void(Duration)>& block);
+            const Block& block);
   void sleep_until(ExecTime deadline);
   /// Puts what has arrived up to now into the program's sockets.
   void take_arrived();
@@ -53,20 +55,30 @@ class Agent {
   void finish(int exit_code);
 
  private:
-  explicit Agent(std::unique_ptr<client::Vehicle> vehicle) : vehicle_(std::move(vehicle)) {}
+  Agent(std::unique_ptr<client::Vehicle> vehicle, client::TimeSource& source)
+      : vehicle_(std::move(vehicle)), source_(&source), factor_(source.clock().factor) {}
+  class Unpaid;
   /// Takes the next message, or lets ET reach that instant.
   bool receive_until(std::optional<ExecTime> until);
-  bool lead();
+  bool lead(Unpaid& unpaid);
+  void wake_due();
+  Duration slice(std::optional<ExecTime> deadline, int looks) const;
   [[noreturn]] static void end(const Failure& failure);
 
   static std::atomic<Agent*> instance_;
 
   std::unique_ptr<client::Vehicle> vehicle_;
+  client::TimeSource* source_;  // of the vehicle
+  double factor_;               // ET per CPU time, or wall time
   Port port_;
   Threads threads_;
   std::mutex leading_;
   std::mutex waits_mutex_;
-  std::list<std::optional<ExecTime>> waits_;  // deadlines of those that wait
+  struct Wait {
+    std::optional<ExecTime> deadline;
+    int wake;  // an eventfd of its thread
+  };
+  std::list<Wait> waits_;
 };
 
 }  // namespace tether::as_is

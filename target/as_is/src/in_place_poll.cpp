@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <optional>
+#include <vector>
 
 #include <poll.h>
 #include <sys/epoll.h>
@@ -23,19 +24,19 @@ std::optional<ExecTime> deadline_of(const Agent& agent, std::optional<Duration> 
   return agent.now() + *timeout;
 }
 
-/// `look(slice)`: the real call, for at most so long. Its result, or 0 after the timeout.
+/// `look()`: the real call, without waiting; `block` waits for the same. The result, or 0 after the
+/// timeout.
 template <class Look>
-int wait_for(Agent& agent, std::optional<Duration> timeout, Look look) {
+int wait_for(Agent& agent, std::optional<Duration> timeout, Look look, const Agent::Block& block) {
   const Inside inside;
-  int result = look(Duration(0));
+  int result = look();
   if (result != 0) return result;
   if (timeout == Duration(0)) {
     if (agent.port().is_any()) agent.take_arrived();
-    return look(Duration(0));
+    return look();
   }
   agent.wait(
-      deadline_of(agent, timeout), [&] { return (result = look(Duration(0))) != 0; },
-      [&](Duration slice) { look(slice); });
+      deadline_of(agent, timeout), [&] { return (result = look()) != 0; }, block);
   return result;
 }
 
@@ -52,7 +53,7 @@ bool read_timeout(const timespec* time, std::optional<Duration>& timeout) {
 
 struct Sets {
   fd_set* given[3];
-  fd_set wanted[3];
+  fd_set wanted[3]{};
 
   Sets(fd_set* read, fd_set* write, fd_set* except) : given{read, write, except} {
     for (int i = 0; i < 3; ++i)
@@ -64,28 +65,47 @@ struct Sets {
   }
 };
 
+constexpr timespec kAtOnce{};
+
 int select_for(Agent& agent, int count, Sets sets, std::optional<Duration> timeout,
                const sigset_t* mask) {
-  return wait_for(agent, timeout, [&](Duration slice) {
-    const timespec time = to_timespec(slice);
-    return TETHER_REAL(pselect)(count, sets.again(0), sets.again(1), sets.again(2), &time, mask);
-  });
+  return wait_for(
+      agent, timeout,
+      [&] {
+        return TETHER_REAL(pselect)(count, sets.again(0), sets.again(1), sets.again(2), &kAtOnce,
+                                    mask);
+      },
+      [&](Duration slice, int wake) {
+        const timespec time = to_timespec(slice);
+        Sets with_wake = sets;
+        auto& [read, write, except] = with_wake.wanted;
+        if (wake < FD_SETSIZE) FD_SET(wake, &read);
+        TETHER_REAL(pselect)(std::max(count, wake + 1), &read, &write, &except, &time, mask);
+      });
 }
 
 int poll_for(Agent& agent, pollfd* fds, nfds_t count, std::optional<Duration> timeout,
              const sigset_t* mask) {
-  return wait_for(agent, timeout, [&](Duration slice) {
-    const timespec time = to_timespec(slice);
-    return TETHER_REAL(ppoll)(fds, count, &time, mask);
-  });
+  std::vector<pollfd> with_wake;
+  return wait_for(
+      agent, timeout, [&] { return TETHER_REAL(ppoll)(fds, count, &kAtOnce, mask); },
+      [&](Duration slice, int wake) {
+        const timespec time = to_timespec(slice);
+        with_wake.assign(fds, fds + count);
+        with_wake.push_back({wake, POLLIN, 0});
+        TETHER_REAL(ppoll)(with_wake.data(), with_wake.size(), &time, mask);
+      });
 }
 
 int epoll_for(Agent& agent, int epoll, epoll_event* events, int most,
               std::optional<Duration> timeout, const sigset_t* mask) {
-  return wait_for(agent, timeout, [&](Duration slice) {
-    const timespec time = to_timespec(slice);
-    return TETHER_REAL(epoll_pwait2)(epoll, events, most, &time, mask);
-  });
+  return wait_for(
+      agent, timeout, [&] { return TETHER_REAL(epoll_pwait)(epoll, events, most, 0, mask); },
+      [&](Duration slice, int wake) {
+        const timespec time = to_timespec(slice);
+        pollfd fds[] = {{epoll, POLLIN, 0}, {wake, POLLIN, 0}};
+        TETHER_REAL(ppoll)(fds, 2, &time, mask);
+      });
 }
 
 int invalid() {

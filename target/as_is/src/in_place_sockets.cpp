@@ -54,10 +54,10 @@ ssize_t read_when_ready(Agent& agent, int socket, int flags, Take take) {
         result = take();
         return !is_empty();
       },
-      [&](Duration slice) {
-        pollfd fd{socket, POLLIN, 0};
+      [&](Duration slice, int wake) {
+        pollfd fds[] = {{socket, POLLIN, 0}, {wake, POLLIN, 0}};
         const timespec time = to_timespec(slice);
-        TETHER_REAL(ppoll)(&fd, 1, &time, nullptr);
+        TETHER_REAL(ppoll)(fds, 2, &time, nullptr);
       });
   return result;
 }

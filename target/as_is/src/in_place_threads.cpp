@@ -43,17 +43,23 @@ int wait_until(Agent& agent, clockid_t clock, const timespec* until, Take take) 
   if (!duration_of(*until)) return EINVAL;
   const ExecTime deadline = et_of(clock, *until);
   int result = ETIMEDOUT;
+  const auto block = [&](Duration slice, int) {
+    timespec real{};
+    TETHER_REAL(clock_gettime)(CLOCK_REALTIME, &real);
+    const timespec end = to_timespec(duration_of(real).value_or(Duration(0)) + slice);
+    result = take(&end);
+  };
   const Inside inside;
+  block(Duration(0), -1);  // others get the mutex, also if the deadline is past
   agent.wait(
-      deadline, [&] { return result != ETIMEDOUT; },
-      [&](Duration slice) {
-        timespec real{};
-        TETHER_REAL(clock_gettime)(CLOCK_REALTIME, &real);
-        const auto now = duration_of(real).value_or(Duration(0));
-        const timespec end = to_timespec(now + slice);
-        result = take(&end);
-      });
+      deadline, [&] { return result != ETIMEDOUT; }, block);
   return result;
+}
+
+// Which clock a condition has is not told. What the two show is a billion seconds apart.
+clockid_t clock_of(const timespec& until) {
+  constexpr time_t kBetween_s = 500'000'000;
+  return until.tv_sec < kBetween_s ? CLOCK_MONOTONIC : CLOCK_REALTIME;
 }
 
 int wait_for_condition(Agent& agent, pthread_cond_t* condition, pthread_mutex_t* mutex,
@@ -97,7 +103,7 @@ TETHER_IN_PLACE int pthread_cond_timedwait(pthread_cond_t* __restrict condition,
                                            const timespec* __restrict until) {
   Agent* const agent = tether::as_is::agent();
   if (agent == nullptr) return TETHER_REAL(pthread_cond_timedwait)(condition, mutex, until);
-  return wait_for_condition(*agent, condition, mutex, CLOCK_REALTIME, until);
+  return wait_for_condition(*agent, condition, mutex, clock_of(*until), until);
 }
 
 TETHER_IN_PLACE int pthread_cond_clockwait(pthread_cond_t* condition, pthread_mutex_t* mutex,

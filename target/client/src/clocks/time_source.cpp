@@ -48,6 +48,10 @@ class CpuSource final : public TimeSource {
   Duration elapsed_at_resume() const override;
   Duration elapsed_in_children() const override;
   Status complete() const override;
+  void leave_out(Duration computed) override {
+    const std::lock_guard lock(mutex_);
+    excluded_before_ += computed;
+  }
   void exclude_calling_thread() override;
   void release_calling_thread() override;
 

@@ -30,6 +30,10 @@ class TimeSource {
   /// Fails with kRefused if a part of the SUT's computing is not in `elapsed()`.
   virtual Status complete() const { return ok_status(); }
 
+  /// So much of what the calling thread has computed was work for the client library: it is not
+  /// counted. Only if computing is what is measured.
+  virtual void leave_out(Duration) {}
+
   /// Until its release, the calling thread works for the client library; a source that measures
   /// threads separately does not count it. One thread at a time.
   virtual void exclude_calling_thread() {}
