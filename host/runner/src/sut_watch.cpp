@@ -26,6 +26,7 @@ constexpr double kDoubtfulDiskShare = 0.1;
 constexpr double kDoubtfulThreads = 1.3;
 // Fewer say nothing: on a busy machine, each stands for 50 ms.
 constexpr int kLeastParallelLooks = 5;
+constexpr double kLooksAfterOthers = 5.0;
 // Less waiting than the limits above matters where a flight is as close to a limit.
 constexpr Duration kLeastSlightWait = std::chrono::milliseconds(20);
 
@@ -77,8 +78,10 @@ std::vector<campaign::Doubt> doubts_of(const coordinator::SutReport& sut,
     doubts.push_back({Kind::kDiskWait, sut.uav, on_disk_s});
   const double computing_s = to_seconds(looks.computing);
   const double of_all_s = to_seconds(looks.of_all_threads);
+  // Threads that wait look after each other, which is not the program's computing.
+  const double least_parallel_s = sees_waits ? kLooksAfterOthers * least_s : least_s;
   if (clock.kind == computer::ClockKind::kCpu && looks.parallel_looks >= kLeastParallelLooks &&
-      (of_all_s - computing_s) * clock.factor > least_s &&
+      (of_all_s - computing_s) * clock.factor > least_parallel_s &&
       of_all_s > kDoubtfulThreads * computing_s)
     doubts.push_back({Kind::kParallelThreads, sut.uav, of_all_s / computing_s});
   return doubts;

@@ -1,12 +1,15 @@
 #include "agent.h"
 
+#include "clocks.h"
 #include "real.h"
 
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <set>
 #include <string>
+#include <thread>
 #include <utility>
 
 #include <poll.h>
@@ -136,12 +139,14 @@ bool Agent::lead(Unpaid& unpaid) {
   const std::unique_lock leading(leading_, std::try_to_lock);
   if (!leading || !threads_.are_others_waiting()) return false;
   std::optional<ExecTime> earliest;
+  bool is_empty = true;
   {
     const std::lock_guard lock(waits_mutex_);
+    is_empty = waits_.empty();
     for (const auto& [deadline, wake] : waits_)
       if (deadline) earliest = std::min(earliest.value_or(*deadline), *deadline);
   }
-  if (earliest && *earliest <= now()) return false;
+  if (is_empty || (earliest && *earliest <= now())) return false;
   unpaid.pause();
   receive_until(earliest);
   unpaid.go_on();
@@ -157,19 +162,62 @@ void Agent::wake_due() {
       static_cast<void>(TETHER_REAL(write)(wake, &kOnce, sizeof kOnce));
 }
 
+std::list<Agent::Wait>::iterator Agent::enter(std::optional<ExecTime> deadline) {
+  const int wake = wake_of_thread();
+  const std::lock_guard lock(waits_mutex_);
+  return waits_.insert(waits_.end(), {deadline, wake});
+}
+
+void Agent::leave(std::list<Wait>::iterator wait) {
+  const std::lock_guard lock(waits_mutex_);
+  waits_.erase(wait);
+}
+
 bool Agent::wait(std::optional<ExecTime> deadline, const std::function<bool()>& is_ready,
                  const Block& block) {
-  const auto own = [&] {
-    const std::lock_guard lock(waits_mutex_);
-    return waits_.insert(waits_.end(), {deadline, wake_of_thread()});
-  }();
-  bool ready = false;
   Unpaid unpaid(*source_);
+  const auto own = enter(deadline);
+  bool ready = false;
   for (int looks = 0; !(ready = is_ready()) && !(deadline && now() >= *deadline);)
     if (!lead(unpaid)) block(slice(deadline, looks++), own->wake);
-  const std::lock_guard lock(waits_mutex_);
-  waits_.erase(own);
+  leave(own);
   return ready;
+}
+
+bool Agent::wait_for_thread(ExecTime deadline, const std::function<bool(Duration)>& block) {
+  constexpr std::uint64_t kOnce = 1;
+  std::call_once(leader_begins_, [this] {
+    leader_wake_ = ::eventfd(0, EFD_CLOEXEC);
+    std::thread([this] { lead_for_others(); }).detach();
+  });
+  const Unpaid unpaid(*source_);
+  if (block(Duration(0))) return true;
+  const auto own = enter(deadline);
+  static_cast<void>(TETHER_REAL(write)(leader_wake_, &kOnce, sizeof kOnce));
+  bool is_given = false;
+  while (!is_given && now() < deadline) is_given = block(std::min(kFirstSlice, slice(deadline, 0)));
+  leave(own);
+  return is_given;
+}
+
+// As long as somebody waits; then until somebody does.
+void Agent::lead_for_others() {
+  const Inside inside;
+  for (;;) {
+    bool is_any = false;
+    {
+      const std::lock_guard lock(waits_mutex_);
+      is_any = !waits_.empty();
+    }
+    Unpaid unpaid(*source_);
+    if (!lead(unpaid)) {
+      pollfd fd{leader_wake_, POLLIN, 0};
+      const timespec time = to_timespec(kFirstSlice);
+      TETHER_REAL(ppoll)(&fd, 1, is_any ? &time : nullptr, nullptr);
+      std::uint64_t count = 0;
+      if (fd.revents != 0) static_cast<void>(TETHER_REAL(read)(leader_wake_, &count, sizeof count));
+    }
+  }
 }
 
 void Agent::sleep_until(ExecTime deadline) {
@@ -180,6 +228,20 @@ void Agent::sleep_until(ExecTime deadline) {
         const timespec time{0, static_cast<long>(slice.count())};
         TETHER_REAL(ppoll)(&fd, 1, &time, nullptr);
       });
+}
+
+void Agent::tell_gap(const char* what) {
+  static std::mutex mutex;
+  static std::set<std::string> told;
+  {
+    const std::lock_guard lock(mutex);
+    if (!told.insert(what).second) return;
+  }
+  say(std::string("the program uses ") + what +
+      ", which follows the machine's clock: its time is not that of the run");
+  const std::lock_guard leading(leading_);
+  static_cast<void>(
+      vehicle_->annotate("as_is", std::string("{\"not_covered\": \"") + what + "\"}"));
 }
 
 void Agent::finish(int exit_code) {

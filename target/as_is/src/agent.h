@@ -19,14 +19,20 @@ namespace tether::as_is {
 /// (docs/guide/as-is.md). One for each process that is under test. Its functions are called by
 /// threads that are Inside.
 ///
-/// A wait registers its deadline. When all threads of the program wait, one of them leads: it asks
-/// the coordinator for what comes first, a message of the flight controller or the earliest
-/// deadline, and ET goes on from there. The messages are put into the program's own sockets, so
-/// that the kernel wakes whoever waits for them.
+/// A wait registers its deadline. When all threads of the program wait, one leads: it asks the
+/// coordinator for what comes first, a message of the flight controller or the earliest deadline,
+/// and ET goes on from there. A thread that waits for another one cannot lead, because it has to
+/// hear that one all the time; a thread of this library does it for them. The messages are put into
+/// the program's own sockets, so that the kernel wakes whoever waits for them.
 ///
 /// Thread-safe.
 class Agent {
  public:
+  struct Wait {
+    std::optional<ExecTime> deadline;
+    int wake;  // an eventfd of its thread
+  };
+
   /// nullptr: this process is not under test, or no more.
   static Agent* get() { return instance_.load(std::memory_order_acquire); }
   /// Connects, as the environment says. Ends the process, with a line, if it cannot.
@@ -43,6 +49,8 @@ class Agent {
   using Block = std::function<void(Duration slice, int wake)>;
   bool wait(std::optional<ExecTime> deadline, const std::function<bool()>& is_ready,
             const Block& block);
+  /// The same for what another thread of the program gives; `block` returns whether it has.
+  bool wait_for_thread(ExecTime deadline, const std::function<bool(Duration)>& block);
   void sleep_until(ExecTime deadline);
   /// Puts what has arrived up to now into the program's sockets.
   void take_arrived();
@@ -50,6 +58,9 @@ class Agent {
   Port& port() { return port_; }
   /// To the flight controller. False: the UAV has none.
   bool send(std::span<const std::uint8_t> bytes);
+
+  /// The program uses something that this library does not bring to ET: says so, once for each.
+  void tell_gap(const char* what);
 
   /// The program ends with this code.
   void finish(int exit_code);
@@ -61,6 +72,9 @@ class Agent {
   /// Takes the next message, or lets ET reach that instant.
   bool receive_until(std::optional<ExecTime> until);
   bool lead(Unpaid& unpaid);
+  [[noreturn]] void lead_for_others();
+  std::list<Wait>::iterator enter(std::optional<ExecTime> deadline);
+  void leave(std::list<Wait>::iterator wait);
   void wake_due();
   Duration slice(std::optional<ExecTime> deadline, int looks) const;
   [[noreturn]] static void end(const Failure& failure);
@@ -74,11 +88,9 @@ class Agent {
   Threads threads_;
   std::mutex leading_;
   std::mutex waits_mutex_;
-  struct Wait {
-    std::optional<ExecTime> deadline;
-    int wake;  // an eventfd of its thread
-  };
   std::list<Wait> waits_;
+  std::once_flag leader_begins_;
+  int leader_wake_ = -1;  // an eventfd: somebody waits for another thread
 };
 
 }  // namespace tether::as_is

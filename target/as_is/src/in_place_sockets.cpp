@@ -68,6 +68,21 @@ ssize_t send_bytes(Agent& agent, const void* bytes, std::size_t size) {
   return static_cast<ssize_t>(size);
 }
 
+/// Whether a call may wait for another computer or program: then the caller is outside meanwhile.
+bool is_outside(int socket) {
+  if (agent() == nullptr) return false;
+  int family = 0;
+  socklen_t size = sizeof family;
+  return ::getsockopt(socket, SOL_SOCKET, SO_DOMAIN, &family, &size) == 0 &&
+         (family == AF_INET || family == AF_INET6);
+}
+template <class Call>
+auto call_outside(int socket, Call call) {
+  if (!is_outside(socket)) return call();
+  const Threads::Outside outside;
+  return call();
+}
+
 /// Whether a message to this address from this socket goes to the flight controller: then it is
 /// ours from now on.
 Agent* agent_for(int socket, const sockaddr* to, socklen_t size) {
@@ -105,7 +120,8 @@ TETHER_IN_PLACE int bind(int socket, const sockaddr* address, socklen_t size) {
 
 TETHER_IN_PLACE int connect(int socket, const sockaddr* address, socklen_t size) {
   Agent* const agent = agent_for(socket, address, size);
-  if (agent == nullptr || address == nullptr) return TETHER_REAL(connect)(socket, address, size);
+  if (agent == nullptr || address == nullptr)
+    return call_outside(socket, [&] { return TETHER_REAL(connect)(socket, address, size); });
   const sockaddr_in& own = agent->port().own();
   return TETHER_REAL(connect)(socket, reinterpret_cast<const sockaddr*>(&own), sizeof own);
 }
@@ -125,7 +141,9 @@ TETHER_IN_PLACE int close(int fd) {
 TETHER_IN_PLACE ssize_t recvfrom(int socket, void* __restrict bytes, size_t size, int flags,
                                  sockaddr* __restrict from, socklen_t* __restrict from_size) {
   Agent* const agent = agent_of(socket);
-  if (agent == nullptr) return TETHER_REAL(recvfrom)(socket, bytes, size, flags, from, from_size);
+  if (agent == nullptr)
+    return call_outside(
+        socket, [&] { return TETHER_REAL(recvfrom)(socket, bytes, size, flags, from, from_size); });
   const ssize_t got = read_when_ready(*agent, socket, flags, [&] {
     return TETHER_REAL(recvfrom)(socket, bytes, size, flags | MSG_DONTWAIT, from, from_size);
   });
@@ -134,18 +152,19 @@ TETHER_IN_PLACE ssize_t recvfrom(int socket, void* __restrict bytes, size_t size
 }
 
 TETHER_IN_PLACE ssize_t recv(int socket, void* bytes, size_t size, int flags) {
-  if (agent_of(socket) == nullptr) return TETHER_REAL(recv)(socket, bytes, size, flags);
   return recvfrom(socket, bytes, size, flags, nullptr, nullptr);
 }
 
 TETHER_IN_PLACE ssize_t read(int fd, void* bytes, size_t size) {
-  if (agent_of(fd) == nullptr) return TETHER_REAL(read)(fd, bytes, size);
+  if (agent_of(fd) == nullptr)
+    return call_outside(fd, [&] { return TETHER_REAL(read)(fd, bytes, size); });
   return recvfrom(fd, bytes, size, 0, nullptr, nullptr);
 }
 
 TETHER_IN_PLACE ssize_t recvmsg(int socket, msghdr* message, int flags) {
   Agent* const agent = agent_of(socket);
-  if (agent == nullptr) return TETHER_REAL(recvmsg)(socket, message, flags);
+  if (agent == nullptr)
+    return call_outside(socket, [&] { return TETHER_REAL(recvmsg)(socket, message, flags); });
   const ssize_t got = read_when_ready(*agent, socket, flags, [&] {
     return TETHER_REAL(recvmsg)(socket, message, flags | MSG_DONTWAIT);
   });

@@ -4,10 +4,13 @@
 #include "in_place.h"
 
 #include <cerrno>
+#include <cstdarg>
 #include <memory>
 
+#include <linux/futex.h>
 #include <pthread.h>
 #include <semaphore.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 namespace tether::as_is {
@@ -43,16 +46,15 @@ int wait_until(Agent& agent, clockid_t clock, const timespec* until, Take take) 
   if (!duration_of(*until)) return EINVAL;
   const ExecTime deadline = et_of(clock, *until);
   int result = ETIMEDOUT;
-  const auto block = [&](Duration slice, int) {
+  const auto block = [&](Duration slice) {
     timespec real{};
     TETHER_REAL(clock_gettime)(CLOCK_REALTIME, &real);
     const timespec end = to_timespec(duration_of(real).value_or(Duration(0)) + slice);
     result = take(&end);
+    return result != ETIMEDOUT;
   };
   const Inside inside;
-  block(Duration(0), -1);  // others get the mutex, also if the deadline is past
-  agent.wait(
-      deadline, [&] { return result != ETIMEDOUT; }, block);
+  agent.wait_for_thread(deadline, block);
   return result;
 }
 
@@ -77,6 +79,30 @@ int wait_for_semaphore(Agent& agent, sem_t* semaphore, clockid_t clock, const ti
   if (result == 0) return 0;
   errno = result;
   return -1;
+}
+
+// The library of C++ waits for futures and semaphores so.
+long wait_for_futex(Agent& agent, long word, long operation, long value, const timespec& timeout,
+                    long bits) {
+  const bool is_absolute = (operation & FUTEX_CMD_MASK) == FUTEX_WAIT_BITSET;
+  const clockid_t clock =
+      (operation & FUTEX_CLOCK_REALTIME) != 0 ? CLOCK_REALTIME : CLOCK_MONOTONIC;
+  const Inside inside;
+  const timespec until =
+      is_absolute ? timeout
+                  : shown(clock, agent.now() + duration_of(timeout).value_or(Duration(0)));
+  const long plain = FUTEX_WAIT_BITSET | FUTEX_CLOCK_REALTIME | (operation & FUTEX_PRIVATE_FLAG);
+  const long mask = is_absolute ? bits : static_cast<long>(FUTEX_BITSET_MATCH_ANY);
+  const int result = wait_until(agent, clock, &until, [&](const timespec* end) {
+    return TETHER_REAL(syscall)(SYS_futex, word, plain, value, end, 0L, mask) == 0 ? 0 : errno;
+  });
+  errno = result;
+  return result == 0 ? 0 : -1;
+}
+
+bool is_timed_wait(long operation) {
+  const long command = operation & FUTEX_CMD_MASK;
+  return command == FUTEX_WAIT || command == FUTEX_WAIT_BITSET;
 }
 
 }  // namespace
@@ -123,6 +149,18 @@ TETHER_IN_PLACE int sem_clockwait(sem_t* semaphore, clockid_t clock, const times
   Agent* const agent = tether::as_is::agent();
   if (agent == nullptr) return TETHER_REAL(sem_clockwait)(semaphore, clock, until);
   return wait_for_semaphore(*agent, semaphore, clock, until);
+}
+
+TETHER_IN_PLACE long syscall(long number, ...) {
+  va_list list;
+  va_start(list, number);
+  long a[6];
+  for (long& argument : a) argument = va_arg(list, long);
+  va_end(list);
+  Agent* const agent = number == SYS_futex ? tether::as_is::agent() : nullptr;
+  if (agent == nullptr || a[3] == 0 || !is_timed_wait(a[1]))
+    return TETHER_REAL(syscall)(number, a[0], a[1], a[2], a[3], a[4], a[5]);
+  return wait_for_futex(*agent, a[0], a[1], a[2], *reinterpret_cast<const timespec*>(a[3]), a[5]);
 }
 
 TETHER_IN_PLACE void _exit(int code) {

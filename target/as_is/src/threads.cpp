@@ -60,8 +60,10 @@ std::optional<unsigned long> turns_of_others() {
 }  // namespace
 
 std::atomic<int> Threads::count_ = 1;
+std::atomic<int> Threads::outside_ = 0;
 
 bool Threads::are_others_waiting() {
+  if (outside_ > 0) return false;
   if (!are_several()) return true;
   const auto first = turns_of_others();
   return first && turns_of_others() == first;

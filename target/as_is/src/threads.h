@@ -14,6 +14,16 @@ class Threads {
   /// them, twice, unless there is one only.
   bool are_others_waiting();
 
+  /// While one lives, the calling thread waits for somebody outside, in real time: ET does not go
+  /// on without it.
+  class Outside {
+   public:
+    Outside() { ++outside_; }
+    ~Outside() { --outside_; }
+    Outside(const Outside&) = delete;
+    Outside& operator=(const Outside&) = delete;
+  };
+
   /// A thread of the program begins, or ends.
   static void began() { ++count_; }
   static void ended() { --count_; }
@@ -21,6 +31,7 @@ class Threads {
 
  private:
   static std::atomic<int> count_;
+  static std::atomic<int> outside_;
 };
 
 }  // namespace tether::as_is

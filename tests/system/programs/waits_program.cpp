@@ -1,0 +1,131 @@
+// A program that knows nothing of Tether: waits for 20 ms in each way that there is, and prints how
+// long that took by MONOTONIC and REALTIME [µs].
+#include <chrono>
+#include <condition_variable>
+#include <cstdio>
+#include <ctime>
+#include <functional>
+#include <future>
+#include <mutex>
+#include <semaphore>
+#include <thread>
+
+#include <netinet/in.h>
+#include <poll.h>
+#include <pthread.h>
+#include <semaphore.h>
+#include <sys/epoll.h>
+#include <sys/select.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr long kWait_ns = 20'000'000;
+
+long us(clockid_t clock) {
+  timespec t{};
+  clock_gettime(clock, &t);
+  return static_cast<long>(t.tv_sec) * 1'000'000 + t.tv_nsec / 1000;
+}
+
+timespec later(clockid_t clock) {
+  timespec t{};
+  clock_gettime(clock, &t);
+  t.tv_nsec += kWait_ns;
+  if (t.tv_nsec >= 1'000'000'000) {
+    t.tv_nsec -= 1'000'000'000;
+    ++t.tv_sec;
+  }
+  return t;
+}
+
+void take(const char* name, const std::function<void()>& wait) {
+  const long monotonic = us(CLOCK_MONOTONIC), real = us(CLOCK_REALTIME);
+  wait();
+  std::printf("%s %ld %ld\n", name, us(CLOCK_MONOTONIC) - monotonic, us(CLOCK_REALTIME) - real);
+}
+
+}  // namespace
+
+int main() {
+  const timespec duration{0, kWait_ns};
+  take("nanosleep", [&] { nanosleep(&duration, nullptr); });
+  take("usleep", [] { usleep(kWait_ns / 1000); });
+  for (const clockid_t clock : {CLOCK_MONOTONIC, CLOCK_REALTIME})
+    take("clock_nanosleep", [&] {
+      const timespec until = later(clock);
+      clock_nanosleep(clock, TIMER_ABSTIME, &until, nullptr);
+    });
+  take("poll", [] { poll(nullptr, 0, 20); });
+  take("ppoll", [&] { ppoll(nullptr, 0, &duration, nullptr); });
+  take("select", [] {
+    timeval time{0, kWait_ns / 1000};
+    select(0, nullptr, nullptr, nullptr, &time);
+  });
+  take("pselect", [&] { pselect(0, nullptr, nullptr, nullptr, &duration, nullptr); });
+  const int epoll = epoll_create1(0);
+  epoll_event event{};
+  take("epoll_wait", [&] { epoll_wait(epoll, &event, 1, 20); });
+  take("epoll_pwait2", [&] { epoll_pwait2(epoll, &event, 1, &duration, nullptr); });
+
+  pthread_mutex_t mutex = PTHREAD_MUTEX_INITIALIZER;
+  pthread_cond_t condition = PTHREAD_COND_INITIALIZER;
+  pthread_mutex_lock(&mutex);
+  take("pthread_cond_timedwait", [&] {
+    const timespec until = later(CLOCK_REALTIME);
+    pthread_cond_timedwait(&condition, &mutex, &until);
+  });
+  take("pthread_cond_clockwait", [&] {
+    const timespec until = later(CLOCK_MONOTONIC);
+    pthread_cond_clockwait(&condition, &mutex, CLOCK_MONOTONIC, &until);
+  });
+  pthread_mutex_unlock(&mutex);
+  sem_t semaphore;
+  sem_init(&semaphore, 0, 0);
+  take("sem_timedwait", [&] {
+    const timespec until = later(CLOCK_REALTIME);
+    sem_timedwait(&semaphore, &until);
+  });
+  take("sem_clockwait", [&] {
+    const timespec until = later(CLOCK_MONOTONIC);
+    sem_clockwait(&semaphore, CLOCK_MONOTONIC, &until);
+  });
+
+  take("sleep_for", [] { std::this_thread::sleep_for(20ms); });
+  std::mutex own;
+  std::condition_variable any;
+  take("wait_for", [&] {
+    std::unique_lock lock(own);
+    any.wait_for(lock, 20ms);
+  });
+  std::promise<int> promise;
+  auto future = promise.get_future();
+  take("future", [&] { future.wait_for(20ms); });
+  std::counting_semaphore<4> counting(0);
+  take("counting_semaphore", [&] { static_cast<void>(counting.try_acquire_for(20ms)); });
+  const int udp = socket(AF_INET, SOCK_DGRAM, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(14540);
+  bind(udp, reinterpret_cast<const sockaddr*>(&address), sizeof address);
+  take("SO_RCVTIMEO", [&] {
+    const timeval time{0, kWait_ns / 1000};
+    setsockopt(udp, SOL_SOCKET, SO_RCVTIMEO, &time, sizeof time);
+    char byte = 0;
+    recv(udp, &byte, 1, 0);
+  });
+  // One thread computes while another waits.
+  take("beside_computing", [] {
+    std::thread busy([] {
+      const long until = us(CLOCK_MONOTONIC) + 40'000;
+      while (us(CLOCK_MONOTONIC) < until) {
+      }
+    });
+    std::this_thread::sleep_for(20ms);
+    std::printf("woken_beside_computing 0 0\n");
+    busy.join();
+  });
+}
