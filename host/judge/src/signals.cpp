@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include <tether/base/units.h>
+#include <tether/record/tracks.h>
 #include <tether/uav/math.h>
 
 namespace tether::judge {
@@ -137,8 +138,9 @@ std::optional<std::size_t> Signals::find(const mission::Condition& condition) {
   if (condition.quantity->is_of_radio()) return known->second = of_radio(*condition.quantity);
   const auto* source = std::ranges::find(kSources, condition.quantity->name, &Source::quantity);
   stl::Signal signal{std::string(condition.quantity->name), {}};
+  const record::AnchorTrack track(needs_anchor ? *anchor : record::Anchor{}, record_);
   for (const GroundTruth* truth : truths_) {
-    const auto now = needs_anchor ? record::anchor_at(*anchor, truth->at) : record::Anchor{};
+    const auto now = needs_anchor ? track.at(truth->at) : record::Anchor{};
     const auto value = source->value(*truth, needs_anchor ? &now : nullptr);
     if (!value || !std::isfinite(*value)) return std::nullopt;
     signal.values.push_back(*value);

@@ -125,6 +125,9 @@ TEST(Vary, AnAnchorMovesWithItsModel) {
   vary({of("model_y_m", "crate", OneOf{{2.0}})}, 1, false, flown);
   EXPECT_EQ(flown.models[1].X_WM.p, (Vec3{2.0, 2.0, 0.5}));
   EXPECT_EQ(flown.anchors[0].X_WA.p, (Vec3{2.0, 2.0, 0.5}));
+  flown.anchors[0] = {{.name = "alpha", .size_m = {}, .color_rgb = {}}, flown.uavs[0].X_WB};
+  vary({of("start_y_m", "alpha", OneOf{{0.5}})}, 1, false, flown);
+  EXPECT_EQ(flown.anchors[0].X_WA.p, flown.uavs[0].X_WB.p);
 }
 
 // The crate may stand on the floor, as in the file, but not in the pillar or the UAV.

@@ -239,7 +239,7 @@ struct Uav {
   std::optional<energy::Model> energy{};  ///< none: energy is not simulated
 };
 
-/// An anchor: a model of the world that SUTs receive in their catalogue.
+/// An anchor: a model of the world, or a UAV, that SUTs receive in their catalogue.
 struct PlacedAnchor {
   uav::Anchor anchor;
   uav::Pose X_WA;  ///< its centre, at ST 0
@@ -298,7 +298,7 @@ struct WorldOptions {
 struct WorldRequest {
   std::filesystem::path world;  ///< SDF file with one <world>
   std::vector<UavPlacement> uavs;
-  std::vector<std::string> anchors;  ///< names of models of the world
+  std::vector<std::string> anchors;  ///< names of models of the world, or of UAVs
   FileLocation anchors_at{};         ///< where they are requested; empty: in no file
   WorldOptions options{};
 };
