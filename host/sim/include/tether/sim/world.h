@@ -226,6 +226,13 @@ struct Sensor {
   uav::SensorKind kind() const { return static_cast<uav::SensorKind>(model.index()); }
 };
 
+/// What a UAV carries for a time: a point at its centre of mass. Its controller does not know it.
+struct Payload {
+  double mass_kg = 0.0;            ///< ≥ 0
+  SimTime from{};                  ///< the first step with it begins here or later
+  SimTime until = SimTime::max();  ///< the first step without it begins here or later
+};
+
 /// A UAV of the scene: its model (visuals and collisions of its body link), its airframe and its
 /// sensors.
 struct Uav {
@@ -237,6 +244,7 @@ struct Uav {
   /// That of its SDF file; none: it has none. Used only if `energy` is made from it.
   std::optional<energy::Battery> battery{};
   std::optional<energy::Model> energy{};  ///< none: energy is not simulated
+  std::vector<Payload> payloads{};
 };
 
 /// An anchor: a model of the world, or a UAV, that SUTs receive in their catalogue.
