@@ -84,7 +84,7 @@ record::Anchor describe(const sim::World& world, const sim::PlacedAnchor& placed
   info.path_repeats = model->path->repeats;
   info.path_delay = model->path->delay;
   std::tie(info.p_WO_m[0], info.p_WO_m[1], info.p_WO_m[2]) =
-      std::tie(model->p_WO.x, model->p_WO.y, model->p_WO.z);
+      std::tie(model->path->p_WO.x, model->path->p_WO.y, model->path->p_WO.z);
   return info;
 }
 

@@ -29,8 +29,7 @@ void drive(const MovingModel& moving, sim::World& world) {
   for (sim::Model& part : world.models) {
     if (part.name != moving.model && !is_nested_in(part, moving.model)) continue;
     part.is_static = false;
-    part.path = moving.path;
-    part.p_WO = p_WO;
+    part.path = sim::DrivenPath{moving.path, p_WO};
   }
 }
 

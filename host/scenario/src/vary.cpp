@@ -265,12 +265,13 @@ std::set<std::string> touching(const sim::World& world, const sim::Model& model)
 
 /// Those that are nested in a model stay in their places of it.
 void move_nested(sim::Model& model, const uav::Pose& X_WM_before, sim::World& world) {
-  model.p_WO = model.p_WO + (model.X_WM.p - X_WM_before.p);
+  const uav::Pose moved = model.X_WM * uav::inverse(X_WM_before);
+  if (model.path) model.path->p_WO = transform(moved, model.path->p_WO);
   for (sim::Model& part : world.models) {
     if (!is_nested_in(part, model.name)) continue;
     const uav::Pose before = part.X_WM;
     part.X_WM = model.X_WM * (uav::inverse(X_WM_before) * before);
-    part.p_WO = model.p_WO;
+    if (part.path) part.path->p_WO = transform(moved, part.path->p_WO);
     place_anchor(part.name, part.X_WM, before, world);
   }
 }

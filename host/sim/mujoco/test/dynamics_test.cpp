@@ -175,12 +175,13 @@ World world_with_platform() {
   World world = test_world();
   Model platform = box_model("platform", {0.0, 0.0, 0.45}, {1.2, 1.2, 0.1}, {1.0, 0.0, 0.0}, false);
   using std::chrono::seconds;
-  platform.path = uav::Path{{{seconds(0), {0, 0, 0}, 0.0},
-                             {seconds(2), {1, 0, 0}, 1.5},
-                             {seconds(4), {1, 1, 0.3}, 3.0},
-                             {seconds(6), {0, 1, 0}, 4.5},
-                             {seconds(8), {0, 0, 0}, 2.0 * std::numbers::pi}},
-                            true};
+  const uav::Path path{{{seconds(0), {0, 0, 0}, 0.0},
+                        {seconds(2), {1, 0, 0}, 1.5},
+                        {seconds(4), {1, 1, 0.3}, 3.0},
+                        {seconds(6), {0, 1, 0}, 4.5},
+                        {seconds(8), {0, 0, 0}, 2.0 * std::numbers::pi}},
+                       true};
+  platform.path = DrivenPath{path, {}};
   world.models.push_back(std::move(platform));
   return world;
 }

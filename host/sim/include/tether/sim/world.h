@@ -103,14 +103,18 @@ struct Link {
   std::vector<Collision> collisions;
 };
 
+/// How a model is driven.
+struct DrivenPath : uav::Path {
+  uav::Vec3 p_WO{};  ///< about which it turns: the origin of the outermost model that is driven
+};
+
 struct Model {
   std::string name;
   uav::Pose X_WM;
   bool is_static = false;  ///< a dynamic model's links are free bodies; joints are warned about
   std::vector<Link> links;
   /// Of a driven model, which is dynamic: it moves so from `X_WM` on, whatever it meets.
-  std::optional<uav::Path> path{};
-  uav::Vec3 p_WO{};  ///< about which the path turns it: the origin of its outermost model
+  std::optional<DrivenPath> path{};
 };
 
 enum class LightKind { kPoint, kDirectional, kSpot };
