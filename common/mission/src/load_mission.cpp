@@ -19,8 +19,9 @@ using Kind = Clause::Kind;
 
 constexpr toml::Range kTime_s{.min = 0.0, .max = 1e6, .above_min = true};
 constexpr std::array<std::string_view, 2> kNoTasks = {"continue", "abort"};
-constexpr std::array<std::string_view, 9> kClauseKeys = {
-    "name", "during", "after", "always", "never", "eventually", "for_s", "within_s", "before_s"};
+constexpr std::array<std::string_view, 10> kClauseKeys = {
+    "name",       "during", "after",    "always",   "never",
+    "eventually", "for_s",  "within_s", "before_s", "ends_flight"};
 
 std::optional<Duration> time_if(const Table& table, std::string_view key) {
   if (!table.has(key)) return std::nullopt;
@@ -166,6 +167,20 @@ void read_span(const Table& table, const std::vector<Task>& tasks, Clause& claus
   if (!clause.during) table.fail("during", "is empty. Name a task, or omit 'during'.");
 }
 
+void read_ends_flight(const Table& table, Clause& clause) {
+  clause.ends_flight = table.boolean_or("ends_flight", false);
+  if (!clause.ends_flight) return;
+  const bool is_throughout = clause.kind == Kind::kAlways || clause.kind == Kind::kNever;
+  if (!is_throughout || clause.condition->share < 1.0)
+    table.fail("ends_flight", "needs 'always' or 'never' without a share");
+  if (clause.during || clause.after)
+    table.fail("ends_flight", "is for the whole mission. Remove 'during' and 'after'.");
+  if (!clause.condition->quantity->is_of_truth())
+    table.fail("ends_flight",
+               "needs a quantity that the ground truth has, such as 'altitude', not '" +
+                   std::string(clause.condition->quantity->name) + "'");
+}
+
 std::string span_text(const Clause& clause, const std::vector<Task>& tasks) {
   if (clause.after) return "after " + tasks[*clause.after].name;
   if (!clause.during) return "mission";
@@ -192,6 +207,7 @@ Clause read_clause(const Table& table, const std::string& anchor, const std::vec
   read_kind(table, anchor, clause);
   read_times(table, clause);
   read_span(table, tasks, clause);
+  read_ends_flight(table, clause);
   clause.name = table.has("name") ? table.text("name") : text_of(clause, tasks);
   return clause;
 }

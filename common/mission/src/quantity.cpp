@@ -33,6 +33,8 @@ std::span<const Quantity> quantities() {
                "horizontal distance from the UAV to the anchor's centre"},
       Quantity{"separation", Dimension::kLength, Subject::kAnchor, false,
                "distance from the UAV to the anchor's centre, height included"},
+      Quantity{"from_start", Dimension::kLength, Subject::kNone, false,
+               "horizontal distance from the UAV to where it began"},
       Quantity{"x", Dimension::kLength, Subject::kNone, false, "x of the UAV in the world"},
       Quantity{"y", Dimension::kLength, Subject::kNone, false, "y of the UAV in the world"},
       Quantity{"altitude", Dimension::kLength, Subject::kNone, false, "z of the UAV in the world"},

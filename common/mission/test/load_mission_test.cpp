@@ -91,6 +91,20 @@ TEST(Mission, RefusesTasksThatCannotBe) {
   }
 }
 
+TEST(Mission, AClauseCanEndTheFlight) {
+  const Mission mission = parsed(R"(
+[[task]]
+task = "hold"
+[[clause]]
+always = "from_start <= 5 m"
+ends_flight = true
+[[clause]]
+never = "altitude >= 3 m"
+)");
+  EXPECT_TRUE(mission.clauses.at(0).ends_flight);
+  EXPECT_FALSE(mission.clauses.at(1).ends_flight);
+}
+
 TEST(Mission, RefusesClausesThatCannotBe) {
   const std::string always = "always = \"altitude <= 1 m\"\n";
   const std::string eventually = "eventually = \"altitude <= 1 m\"\n";
@@ -115,6 +129,10 @@ TEST(Mission, RefusesClausesThatCannotBe) {
            {always + "during = []", 2, "during"},
            {always + "during = [\"fly\"]\nafter = \"find\"", 2, "during"},
            {always + "until = \"fly\"", 2, "until"},
+           {eventually + "ends_flight = true", 2, "ends_flight"},
+           {always + "during = [\"fly\"]\nends_flight = true", 3, "ends_flight"},
+           {"always = \"altitude <= 1 m in 95 %\"\nends_flight = true", 2, "ends_flight"},
+           {"never = \"data_age >= 1 s\"\nends_flight = true", 2, "ends_flight"},
            {always + "[[clause]]\n" + always, 2, "mission: always altitude <= 1 m"}}) {
     expect_refusal(kTasks + "[[clause]]\n" + c.clause, 11 + c.line, c.subject);
   }

@@ -22,6 +22,12 @@ double log_profile(double height_m, double roughness_m) {
   return std::log(height_m / roughness_m) / std::log(kWindHeight_m / roughness_m);
 }
 
+/// Brought into the heights for which the standard is made.
+double dryden_height_ft(double height_m) {
+  constexpr double kLeast_ft = 10.0, kMost_ft = 1000.0;
+  return std::clamp(height_m / kFoot_m, kLeast_ft, kMost_ft);
+}
+
 }  // namespace
 
 Vec3 mean_wind_W(const Wind& wind, double height_m) {
@@ -31,8 +37,7 @@ Vec3 mean_wind_W(const Wind& wind, double height_m) {
 }
 
 Turbulence turbulence_at(const Wind& wind, double height_m) {
-  constexpr double kLeast_ft = 10.0, kMost_ft = 1000.0;
-  const double h_ft = std::clamp(height_m / kFoot_m, kLeast_ft, kMost_ft);
+  const double h_ft = dryden_height_ft(height_m);
   const double base = 0.177 + 0.000823 * h_ft;
   const double up_m_s = 0.1 * std::hypot(wind.v_WA_m_s.x, wind.v_WA_m_s.y) * wind.turbulence;
   const double level_m_s = up_m_s / std::pow(base, 0.4);
@@ -62,7 +67,11 @@ Gusts::Gusts(const Wind& wind, Duration step, std::uint64_t seed, std::string_vi
 Vec3 Gusts::step(double height_m, const Vec3& v_WB) {
   const Vec3 mean = mean_wind_W(wind_, height_m);
   if (!wind_.gusts()) return mean;
-  const Turbulence turbulence = turbulence_at(wind_, height_m);
+  // Near the ground it stays the same.
+  if (const double at_ft = dryden_height_ft(height_m); at_ft != turbulence_at_ft_) {
+    turbulence_at_ft_ = at_ft;
+    turbulence_ = turbulence_at(wind_, height_m);
+  }
   const double airspeed_m_s = std::max(norm(v_WB - mean), kLeastAirspeed_m_s);
   KeyedRandom random({seed_, stream_, steps_++});
   const auto advance = [&](Filter& filter, double length_m) {
@@ -70,9 +79,9 @@ Vec3 Gusts::step(double height_m, const Vec3& v_WB) {
     filter.second += (1.0 - kept) * (filter.first - filter.second);
     filter.first = kept * filter.first + std::sqrt(1.0 - kept * kept) * random.normal();
   };
-  advance(along_, turbulence.length_m.x);
-  advance(across_, turbulence.length_m.y);
-  advance(up_, turbulence.length_m.z);
+  advance(along_, turbulence_.length_m.x);
+  advance(across_, turbulence_.length_m.y);
+  advance(up_, turbulence_.length_m.z);
   constexpr double kRoot3 = std::numbers::sqrt3, kRoot2 = std::numbers::sqrt2;
   const auto second_order = [](const Filter& filter) {
     return (kRoot3 * filter.first + (1.0 - kRoot3) * filter.second) / kRoot2;
@@ -82,10 +91,10 @@ Vec3 Gusts::step(double height_m, const Vec3& v_WB) {
   const Vec3 ahead = speed_m_s > 0.0
                          ? (1.0 / speed_m_s) * Vec3{wind_.v_WA_m_s.x, wind_.v_WA_m_s.y, 0.0}
                          : Vec3{1.0, 0.0, 0.0};
-  const double along = turbulence.sigma_m_s.x * along_.first;
-  const double across = turbulence.sigma_m_s.y * second_order(across_);
+  const double along = turbulence_.sigma_m_s.x * along_.first;
+  const double across = turbulence_.sigma_m_s.y * second_order(across_);
   return mean + Vec3{along * ahead.x - across * ahead.y, along * ahead.y + across * ahead.x,
-                     turbulence.sigma_m_s.z * second_order(up_)};
+                     turbulence_.sigma_m_s.z * second_order(up_)};
 }
 
 }  // namespace tether::uav

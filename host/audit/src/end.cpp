@@ -158,6 +158,7 @@ void check_how(const record::Record& record, const Footer& footer, Report& repor
       {"sut_lost", goes_on},
       {"sut_hung", goes_on},
       {"interrupted", goes_on},
+      {"killed", goes_on},
       {"timing_differs", goes_on}};
   const auto found = possible.find(footer.end);
   if (found == possible.end())

@@ -8,6 +8,7 @@
 
 #include <tether/base/units.h>
 #include <tether/campaign/true_roi.h>
+#include <tether/record/tracks.h>
 
 /// The SUT's own estimates against ground truth (paper, Tables II and V): each metric reads the
 /// last annotation of a topic, finds the image from which it was made, and compares it with the
@@ -121,7 +122,8 @@ MetricOutcome with_last_look(const scenario::Metric& metric, const record::Recor
   const SimTime taken_at = read->sample_state_at.value_or(*read->sampled_at);
   const auto X_WB = pose_at(record, metric.uav, taken_at);
   if (!X_WB) return no_ground_truth(metric);
-  return evaluate({*estimate, camera, anchor_at(*anchor, taken_at), read, *X_WB});
+  return evaluate(
+      {*estimate, camera, record::AnchorTrack(*anchor, record).at(taken_at), read, *X_WB});
 }
 
 MetricOutcome bearing_error_of(const Look& look) {

@@ -171,7 +171,8 @@ std::string end_of(const record::Footer& footer) {
 
 // A crash comes first among the reasons: it often is the cause of the others.
 void settle(TrialResult& result, const std::string& reason_of_end, const std::string& crash = "") {
-  const bool was_cut = result.end == kEndTimeLimit || result.end == kEndBatteryEmpty;
+  const bool was_cut =
+      result.end == kEndTimeLimit || result.end == kEndBatteryEmpty || result.end == kEndKilled;
   const bool ran = result.end == kEndFinished || was_cut;
   if (!ran) return invalidate(result, reason_of_end.empty() ? result.end : reason_of_end);
   std::string missed = was_cut ? reason_of_end : why_missed(result);

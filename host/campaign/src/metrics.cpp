@@ -9,6 +9,7 @@
 
 #include <tether/base/units.h>
 #include <tether/campaign/metrics.h>
+#include <tether/record/tracks.h>
 #include <tether/uav/math.h>
 
 // The metrics of time and bearing, what all metrics share, and the table of all kinds.
@@ -20,11 +21,12 @@ std::vector<double> bearings_until_finish(const scenario::Metric& metric,
                                           const record::Record& record,
                                           const record::Anchor& anchor) {
   const std::optional<SimTime> finish = finish_time(record, metric.uav);
+  const record::AnchorTrack track(anchor, record);
   std::vector<double> bearings_rad;
   for (const auto& logged : record.ground_truth) {
     const record::GroundTruth& truth = logged.message;
     if (truth.uav != metric.uav || (finish && truth.at > *finish)) continue;
-    bearings_rad.push_back(true_bearing_rad(truth, anchor_at(anchor, truth.at)));
+    bearings_rad.push_back(true_bearing_rad(truth, track.at(truth.at)));
   }
   return bearings_rad;
 }

@@ -4,6 +4,7 @@
 
 #include <tether/campaign/metrics.h>
 #include <tether/campaign/true_roi.h>
+#include <tether/record/tracks.h>
 
 /// The UAV's final position against the intended one (paper, Tables IV and V).
 namespace tether::campaign {
@@ -37,7 +38,7 @@ MetricOutcome abeam_error(const scenario::Metric& metric, const record::Record& 
   if (!path) return why_no_end(metric, record);
   const double yaw_rad = uav::yaw_rad(path->start.q);
   const uav::Vec3 ahead{std::cos(yaw_rad), std::sin(yaw_rad), 0.0};
-  const record::Anchor start = anchor_at(*anchor, SimTime{});
+  const record::Anchor start = record::AnchorTrack(*anchor, record).at(SimTime{});
   const uav::Vec3 p_WA{start.p_WA_m[0], start.p_WA_m[1], start.p_WA_m[2]};
   const double along_m = dot(p_WA - path->start.p, ahead);
   const uav::Vec3 abeam = path->start.p + along_m * ahead;

@@ -8,7 +8,7 @@
 #include <tether/uav/camera_model.h>
 
 // An anchor's outline is sampled in its own frame, projected point by point with the camera's lens,
-// and bounded by a rectangle. Poses between two ground truths are interpolated.
+// and bounded by a rectangle.
 namespace tether::campaign {
 namespace {
 
@@ -22,36 +22,6 @@ uav::Vec3 vec3(const double (&v)[3]) {
 }
 uav::Quat quat(const double (&q)[4]) {
   return {q[0], q[1], q[2], q[3]};
-}
-uav::Pose pose_of(const record::GroundTruth& truth) {
-  return {vec3(truth.p_WB_m), quat(truth.q_WB)};
-}
-
-// Poses between two.
-
-double dot(const uav::Quat& a, const uav::Quat& b) {
-  return a.w * b.w + a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
-uav::Quat blend(double share_a, const uav::Quat& a, double share_b, const uav::Quat& b) {
-  return uav::normalized({share_a * a.w + share_b * b.w, share_a * a.x + share_b * b.x,
-                          share_a * a.y + share_b * b.y, share_a * a.z + share_b * b.z});
-}
-
-uav::Quat slerp(const uav::Quat& a, const uav::Quat& b, double fraction) {
-  // q and −q are one attitude; the nearer one is meant.
-  const double sign = dot(a, b) < 0.0 ? -1.0 : 1.0;
-  const double angle_rad = std::acos(std::min(1.0, std::abs(dot(a, b))));
-  constexpr double kAsGoodAsLinear_rad = 1e-6;
-  if (angle_rad < kAsGoodAsLinear_rad) return blend(1.0 - fraction, a, sign * fraction, b);
-  return blend(std::sin((1.0 - fraction) * angle_rad), a, sign * std::sin(fraction * angle_rad), b);
-}
-
-uav::Pose between(const record::GroundTruth& before, const record::GroundTruth& after,
-                  SimTime instant) {
-  const uav::Pose a = pose_of(before), b = pose_of(after);
-  const double fraction = to_seconds(instant - before.at) / to_seconds(after.at - before.at);
-  return {a.p + fraction * (b.p - a.p), slerp(a.q, b.q, fraction)};
 }
 
 // The points that bound the image of an anchor, in its own frame A.
@@ -143,28 +113,6 @@ PixelRect image_of(const record::CameraInfo& camera) {
 }
 
 }  // namespace
-
-std::optional<uav::Pose> pose_at(const record::Record& record, const std::string& uav,
-                                 SimTime instant) {
-  const record::GroundTruth* before = nullptr;
-  const record::GroundTruth* after = nullptr;
-  for (const auto& logged : record.ground_truth) {
-    const record::GroundTruth& truth = logged.message;
-    if (truth.uav != uav) continue;
-    if (truth.at <= instant) before = &truth;
-    if (truth.at < instant) continue;
-    after = &truth;
-    break;
-  }
-  if (before != nullptr && after != nullptr) {
-    return before == after ? pose_of(*before) : between(*before, *after, instant);
-  }
-  const record::GroundTruth* nearest = before != nullptr ? before : after;
-  if (nearest == nullptr) return std::nullopt;
-  const Duration off = std::max(instant - nearest->at, nearest->at - instant);
-  if (off > record.header.ground_truth_period) return std::nullopt;
-  return pose_of(*nearest);
-}
 
 uav::Pose camera_pose(const record::SensorInfo& camera, const uav::Pose& X_WB) {
   return X_WB * uav::Pose{vec3(camera.camera->p_BS_m), quat(camera.camera->q_BS)};

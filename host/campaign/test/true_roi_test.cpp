@@ -161,50 +161,5 @@ TEST(RoiBearing, IsTheHorizontalAngleOfAPitchedCamera) {
   EXPECT_NEAR(roi_bearing_rad(down, thin), std::atan2(0.5, std::cos(rad_from_deg(30.0))), 1e-12);
 }
 
-// ---- pose_at
-
-record::Record turning_flight() {
-  Flight flight;
-  flight.pose(10, 1.0, 0.0, 170.0).pose(12, 50.0, 0.0, 0.0).pose(20, 2.0, 0.0, -170.0);
-  flight.pose(30, 2.0, 0.0, -90.0);
-  flight.record().ground_truth[1].message.uav = "uav2";
-  flight.record().header.ground_truth_period = milliseconds(10);
-  return flight.record();
-}
-
-std::optional<uav::Pose> pose_at_ms(const record::Record& record, double ms) {
-  return pose_at(record, "uav1", SimTime(duration_from_seconds(ms * 1e-3)));
-}
-
-TEST(PoseAt, IsInterpolatedTheShortWayRound) {
-  record::Record record = turning_flight();
-  const auto pose = pose_at_ms(record, 12.5);
-  ASSERT_TRUE(pose);
-  EXPECT_NEAR(pose->p.x, 1.25, 1e-12);
-  EXPECT_NEAR(uav::yaw_rad(pose->q), rad_from_deg(175.0), 1e-12);
-  EXPECT_EQ(pose_at_ms(record, 20)->p.x, 2.0);
-  EXPECT_EQ(pose_at_ms(record, 20)->q.w, std::cos(rad_from_deg(-85.0)));
-  EXPECT_NEAR(uav::yaw_rad(pose_at_ms(record, 25)->q), rad_from_deg(-130.0), 1e-12);
-  for (double& value : record.ground_truth.back().message.q_WB) value = -value;
-  EXPECT_NEAR(uav::yaw_rad(pose_at_ms(record, 25)->q), rad_from_deg(-130.0), 1e-12)
-      << "q and -q are one attitude";
-}
-
-TEST(PoseAt, OfAStationaryUavIsThatPose) {
-  record::Record record = turning_flight();
-  record.ground_truth.push_back(record.ground_truth.back());
-  record.ground_truth.back().message.at += milliseconds(10);
-  EXPECT_NEAR(uav::yaw_rad(pose_at_ms(record, 33)->q), rad_from_deg(-90.0), 1e-12);
-}
-
-TEST(PoseAt, IsNoneFurtherThanAPeriodFromGroundTruth) {
-  EXPECT_EQ(pose_at_ms(turning_flight(), 0)->p.x, 1.0);
-  EXPECT_EQ(pose_at_ms(turning_flight(), 40)->p.x, 2.0);
-  EXPECT_FALSE(pose_at_ms(turning_flight(), -0.001));
-  EXPECT_FALSE(pose_at_ms(turning_flight(), 40.001));
-  EXPECT_FALSE(pose_at(turning_flight(), "uav3", SimTime(milliseconds(20))));
-  EXPECT_FALSE(pose_at_ms({}, 0));
-}
-
 }  // namespace
 }  // namespace tether::campaign

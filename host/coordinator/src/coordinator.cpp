@@ -122,9 +122,10 @@ RunOptions checked(RunOptions options, const sim::Simulator& simulator) {
 }  // namespace
 
 std::string_view name(RunEnd end) {
-  constexpr std::string_view kNames[] = {
-      "finished",    "time_limit",    "sut_lost",      "sut_hung",       "simulator_lost",
-      "interrupted", "battery_empty", "record_failed", "timing_differs", "flooded"};
+  constexpr std::string_view kNames[] = {"finished",      "time_limit",     "sut_lost",
+                                         "sut_hung",      "simulator_lost", "interrupted",
+                                         "battery_empty", "record_failed",  "timing_differs",
+                                         "flooded",       "killed"};
   return kNames[static_cast<std::size_t>(end)];
 }
 
@@ -226,26 +227,30 @@ bool Coordinator::Impl::advance() {
   stepper_.advance_to(target);
   watchdog_.moved(now);
   release_ready();
-  watch_batteries();
+  watch_flight();
   if (const auto over = watchdog_.over_time(st())) end(*over);
   return true;
 }
 
-// The end is far enough ahead that ST, which advances a turn at a time, cannot have passed it.
-void Coordinator::Impl::watch_batteries() {
-  if (!fallen_at_) {
-    const auto exhausted = stepper_.exhausted();
-    if (!exhausted) return;
-    fallen_at_ = grid().ceil(exhausted->at + kFall) + kStepsPerTurn * grid().dt();
-    fall_ = fmt::format("the battery of UAV \"{}\" was empty at ST {:.3f} s",
-                        world().uavs[exhausted->uav].name, to_seconds(exhausted->at));
-  }
-  if (st() >= *fallen_at_) end({RunEnd::kBatteryEmpty, fall_});
+// An end is far enough ahead that ST, which advances a turn at a time, cannot have passed it.
+void Coordinator::Impl::watch_flight() {
+  const auto plan = [this](SimTime cause, RunEnd how, std::string reason) {
+    const SimTime at = grid().ceil(cause) + kStepsPerTurn * grid().dt();
+    if (!planned_end_ || at < planned_end_->at) planned_end_ = {at, how, std::move(reason)};
+  };
+  if (const auto exhausted = planned_end_ ? std::nullopt : stepper_.exhausted())
+    plan(exhausted->at + kFall, RunEnd::kBatteryEmpty,
+         fmt::format("the battery of UAV \"{}\" was empty at ST {:.3f} s",
+                     world().uavs[exhausted->uav].name, to_seconds(exhausted->at)));
+  if (hooks_.killed)
+    if (auto killed = hooks_.killed())
+      plan(killed->first, RunEnd::kKilled, std::move(killed->second));
+  if (planned_end_ && st() >= planned_end_->at) end({planned_end_->how, planned_end_->reason});
 }
 
 // How far ST may advance in this turn.
 SimTime Coordinator::Impl::next_stop() const {
-  return std::min({times_.limit(), time_limit_, fallen_at_.value_or(SimTime::max()),
+  return std::min({times_.limit(), time_limit_, planned_end_ ? planned_end_->at : SimTime::max(),
                    stepper_.next_due(), next_event_step(), st() + kStepsPerTurn * grid().dt()});
 }
 

@@ -37,6 +37,13 @@ namespace tether::coordinator {
 /// (settle); it is planned (plan.cpp) and held by its Timeline; ST advances to its reply's
 /// timestamp; release_ready sends the reply and logs the interaction. A message between UAVs that
 /// arrives meanwhile can move a reply to an earlier instant (deliver).
+/// How the run ends once ST is there.
+struct PlannedEnd {
+  SimTime at;
+  RunEnd how = RunEnd::kKilled;
+  std::string reason;
+};
+
 class Coordinator::Impl {
  public:
   Impl(sim::Simulator& simulator, record::Recorder& recorder, RunOptions options,
@@ -52,7 +59,7 @@ class Coordinator::Impl {
   record::Header make_header() const;
   bool advance();
   SimTime next_stop() const;
-  void watch_batteries();
+  void watch_flight();
   SimTime paced(SimTime target, WallTime now);
   void watch();
   bool awaits_only_confirmation(const Session& session) const;
@@ -126,9 +133,8 @@ class Coordinator::Impl {
   WallTime flushed_;      // last flush of the record
   Watchdog watchdog_;
   ThreadLooks looks_;
-  std::optional<SimTime> fallen_at_;  // a battery is empty: when the run ends
-  std::string fall_;                  // the reason
-  std::optional<Ending> expelled_;    // how the run ends once the other SUTs have finished
+  std::optional<PlannedEnd> planned_end_;
+  std::optional<Ending> expelled_;  // how the run ends once the other SUTs have finished
   std::optional<Ending> ended_;
 };
 

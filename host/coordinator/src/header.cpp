@@ -70,13 +70,21 @@ record::Anchor describe(const sim::World& world, const sim::PlacedAnchor& placed
                       .p_WA_m = {X_WA.p.x, X_WA.p.y, X_WA.p.z},
                       .q_WA = {X_WA.q.w, X_WA.q.x, X_WA.q.y, X_WA.q.z}};
   const auto model = std::ranges::find(world.models, anchor.name, &sim::Model::name);
-  if (model == world.models.end() || !model->path) return info;
+  if (model == world.models.end()) {
+    const auto uav = std::ranges::find(world.uavs, anchor.name, &sim::Uav::name);
+    if (uav == world.uavs.end()) return info;  // of a world that was not read from a file
+    const uav::Vec3 p_BA = (inverse(uav->X_WB) * X_WA).p;
+    info.uav = uav->name;
+    std::tie(info.p_BA_m[0], info.p_BA_m[1], info.p_BA_m[2]) = std::tie(p_BA.x, p_BA.y, p_BA.z);
+    return info;
+  }
+  if (!model->path) return info;
   for (const uav::Waypoint& point : model->path->waypoints)
     info.path.push_back({point.at, {point.p_m.x, point.p_m.y, point.p_m.z}, point.yaw_rad});
   info.path_repeats = model->path->repeats;
   info.path_delay = model->path->delay;
   std::tie(info.p_WO_m[0], info.p_WO_m[1], info.p_WO_m[2]) =
-      std::tie(model->p_WO.x, model->p_WO.y, model->p_WO.z);
+      std::tie(model->path->p_WO.x, model->path->p_WO.y, model->path->p_WO.z);
   return info;
 }
 

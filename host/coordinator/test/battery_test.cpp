@@ -49,6 +49,29 @@ TEST_F(CoordinatorBattery, EndsTheRunSomeTimeAfterABatteryWasEmpty) {
   EXPECT_LT(report.st, st_ms(3000));
 }
 
+// Whatever the speed of the simulator, and however far it is ahead when the caller looks.
+TEST_F(CoordinatorBattery, EndsTheRunSomeStepsAfterTheCallerKilledIt) {
+  std::vector<SimTime> ends_at;
+  for (const double real_time_factor : {0.0, 0.5}) {
+    options_.real_time_factor = real_time_factor;
+    make();
+    hooks_.killed = [this]() -> std::optional<std::pair<SimTime, std::string>> {
+      for (const record::GroundTruth& truth : recorder_.ground_truth)
+        if (truth.at >= st_ms(50)) return std::pair(truth.at, std::string("beyond the fence"));
+      return std::nullopt;
+    };
+    server_->add_sut(hello(), {sleep(Duration(0), seconds(20)), finish(Duration(0))});
+    const RunReport report = run();
+    EXPECT_EQ(report.end, RunEnd::kKilled);
+    EXPECT_EQ(report.reason, "beyond the fence");
+    EXPECT_EQ(recorder_.footer->end, "killed");
+    EXPECT_EQ(report.st, recorder_.footer->st_at_end);
+    EXPECT_GT(report.st, st_ms(50));
+    ends_at.push_back(report.st);
+  }
+  EXPECT_EQ(ends_at[0], ends_at[1]);
+}
+
 TEST_F(CoordinatorBattery, ReadsTheBatteryAtTheBoundaryOfTheReply) {
   make(world_with_battery(0.5));
   run({{std::chrono::microseconds(20'400), link::ReadBattery{}}, finish(milliseconds(20))});

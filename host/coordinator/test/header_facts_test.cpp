@@ -1,11 +1,15 @@
 #include "header_facts.h"
 
+#include "coordinator_fixture.h"
+
 #include <cmath>
 
 #include <gtest/gtest.h>
 
 namespace tether::coordinator {
 namespace {
+
+class HeaderTest : public CoordinatorTest {};
 
 TEST(HeaderFacts, TheExtentReachesToTheFarthestPointOfAnyShape) {
   sim::Link body;
@@ -44,6 +48,18 @@ TEST(HeaderFacts, ARadioHasTheSettingsOfItsModelOnly) {
   settings.access = radio::Access::kTdma;
   EXPECT_EQ(describe(settings).access, "tdma");
   EXPECT_EQ(describe(settings).tx_power_dbm, settings.tx_power_dbm);
+}
+
+TEST_F(HeaderTest, SaysWhichUavAnAnchorIs) {
+  sim::World world = sim::make_fake_world(2);
+  world.anchors[0].anchor.name = "uav1";
+  world.anchors[0].X_WA.p = world.uavs[1].X_WB.p + uav::Vec3{0, 0, 0.25};
+  make(std::move(world));
+  server_->add_sut(hello("uav0"), {finish(Duration(0))});
+  server_->add_sut(hello("uav1"), {finish(Duration(0))});
+  run();
+  EXPECT_EQ(recorder_.header.anchors.at(0).uav, "uav1");
+  EXPECT_EQ(recorder_.header.anchors.at(0).p_BA_m[2], 0.25);
 }
 
 }  // namespace

@@ -17,38 +17,38 @@ uav::Quat attitude(const GroundTruth& truth) {
   return {q[0], q[1], q[2], q[3]};
 }
 
-// One function for each quantity: its value at an instant. `anchor` is null if the quantity is not
-// about one.
-using Value = std::optional<double> (*)(const GroundTruth& truth, const record::Anchor* anchor);
+// One function for each quantity: its value at an instant. `reference` is the anchor that the
+// quantity is about, or where the UAV began.
+using Value = std::optional<double> (*)(const GroundTruth& truth, const record::Anchor& reference);
 
 uav::Vec3 to_anchor(const GroundTruth& truth, const record::Anchor& anchor) {
   return {anchor.p_WA_m[0] - truth.p_WB_m[0], anchor.p_WA_m[1] - truth.p_WB_m[1], 0.0};
 }
 
-std::optional<double> bearing_error(const GroundTruth& truth, const record::Anchor* anchor) {
-  const uav::Vec3 way = to_anchor(truth, *anchor);
+std::optional<double> bearing_error(const GroundTruth& truth, const record::Anchor& anchor) {
+  const uav::Vec3 way = to_anchor(truth, anchor);
   return std::abs(wrap_angle_rad(std::atan2(way.y, way.x) - uav::yaw_rad(attitude(truth))));
 }
-std::optional<double> separation(const GroundTruth& truth, const record::Anchor* anchor) {
-  const uav::Vec3 way = to_anchor(truth, *anchor);
-  return std::hypot(way.x, way.y, anchor->p_WA_m[2] - truth.p_WB_m[2]);
+std::optional<double> separation(const GroundTruth& truth, const record::Anchor& anchor) {
+  const uav::Vec3 way = to_anchor(truth, anchor);
+  return std::hypot(way.x, way.y, anchor.p_WA_m[2] - truth.p_WB_m[2]);
 }
-std::optional<double> distance(const GroundTruth& truth, const record::Anchor* anchor) {
-  const uav::Vec3 way = to_anchor(truth, *anchor);
+std::optional<double> distance(const GroundTruth& truth, const record::Anchor& anchor) {
+  const uav::Vec3 way = to_anchor(truth, anchor);
   return std::hypot(way.x, way.y);
 }
 template <std::size_t Axis>
-std::optional<double> position(const GroundTruth& truth, const record::Anchor*) {
+std::optional<double> position(const GroundTruth& truth, const record::Anchor&) {
   return truth.p_WB_m[Axis];
 }
-std::optional<double> speed(const GroundTruth& truth, const record::Anchor*) {
+std::optional<double> speed(const GroundTruth& truth, const record::Anchor&) {
   return std::hypot(truth.v_WB_m_s[0], truth.v_WB_m_s[1], truth.v_WB_m_s[2]);
 }
-std::optional<double> yaw_rate(const GroundTruth& truth, const record::Anchor*) {
+std::optional<double> yaw_rate(const GroundTruth& truth, const record::Anchor&) {
   const double(&w)[3] = truth.w_WB_B_rad_s;
   return std::abs(rotate(attitude(truth), {w[0], w[1], w[2]}).z);
 }
-std::optional<double> clearance(const GroundTruth& truth, const record::Anchor*) {
+std::optional<double> clearance(const GroundTruth& truth, const record::Anchor&) {
   return truth.clearance_m;
 }
 
@@ -61,6 +61,7 @@ constexpr std::array kSources = {
     Source{"bearing_error", bearing_error},
     Source{"distance", distance},
     Source{"separation", separation},
+    Source{"from_start", distance},
     Source{"x", position<0>},
     Source{"y", position<1>},
     Source{"altitude", position<2>},
@@ -70,6 +71,25 @@ constexpr std::array kSources = {
 };
 
 }  // namespace
+
+std::optional<Reference> Reference::of(const mission::Condition& condition,
+                                       const GroundTruth& start, const record::Record& record) {
+  if (condition.quantity->subject != mission::Subject::kAnchor) {
+    record::Anchor here;
+    std::ranges::copy(start.p_WB_m, here.p_WA_m);
+    return Reference(here, record);
+  }
+  const auto& anchors = record.header.anchors;
+  const auto anchor = std::ranges::find(anchors, condition.of, &record::Anchor::name);
+  return anchor == anchors.end() ? std::nullopt : std::optional(Reference(*anchor, record));
+}
+
+std::optional<double> value_of(const mission::Quantity& quantity, const GroundTruth& truth,
+                               const Reference& reference) {
+  const auto* source = std::ranges::find(kSources, quantity.name, &Source::quantity);
+  const auto value = source->value(truth, reference.at(truth.at));
+  return value && std::isfinite(*value) ? value : std::nullopt;
+}
 
 Signals::Signals(const std::string& uav, const record::Record& record)
     : uav_(uav), record_(record) {
@@ -129,18 +149,15 @@ std::size_t Signals::of_radio(const mission::Quantity& quantity) {
 std::optional<std::size_t> Signals::find(const mission::Condition& condition) {
   const auto [known, is_new] = known_.try_emplace({condition.quantity->name, condition.of});
   if (!is_new) return known->second;
-  const auto& anchors = record_.header.anchors;
-  const auto anchor = std::ranges::find(anchors, condition.of, &record::Anchor::name);
-  const bool needs_anchor = condition.quantity->subject == mission::Subject::kAnchor;
-  if (needs_anchor && anchor == anchors.end()) return std::nullopt;
   if (condition.quantity->needs_battery()) return known->second = of_battery(*condition.quantity);
   if (condition.quantity->is_of_radio()) return known->second = of_radio(*condition.quantity);
-  const auto* source = std::ranges::find(kSources, condition.quantity->name, &Source::quantity);
+  if (truths_.empty()) return std::nullopt;
+  const auto reference = Reference::of(condition, *truths_.front(), record_);
+  if (!reference) return std::nullopt;
   stl::Signal signal{std::string(condition.quantity->name), {}};
   for (const GroundTruth* truth : truths_) {
-    const auto now = needs_anchor ? record::anchor_at(*anchor, truth->at) : record::Anchor{};
-    const auto value = source->value(*truth, needs_anchor ? &now : nullptr);
-    if (!value || !std::isfinite(*value)) return std::nullopt;
+    const auto value = value_of(*condition.quantity, *truth, *reference);
+    if (!value) return std::nullopt;
     signal.values.push_back(*value);
   }
   known->second = trace_.signals.size();

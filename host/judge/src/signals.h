@@ -7,9 +7,26 @@
 
 #include <tether/mission/condition.h>
 #include <tether/record/reader.h>
+#include <tether/record/tracks.h>
 #include <tether/stl/formula.h>
 
 namespace tether::judge {
+
+/// What a quantity is about: the track of an anchor, or where the UAV began.
+class Reference : public record::AnchorTrack {
+ public:
+  /// None: the record has no such anchor. `record` must outlive the reference.
+  static std::optional<Reference> of(const mission::Condition& condition,
+                                     const record::GroundTruth& start,
+                                     const record::Record& record);
+
+ private:
+  using AnchorTrack::AnchorTrack;
+};
+
+/// In SI units; none if the ground truth does not have it. @pre quantity.is_of_truth()
+std::optional<double> value_of(const mission::Quantity& quantity, const record::GroundTruth& truth,
+                               const Reference& reference);
 
 /// The quantities of a UAV as signals in SI units, at the instants of its ground truth. Each is
 /// computed when it is first asked for.

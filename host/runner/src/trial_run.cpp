@@ -14,6 +14,7 @@
 #include <tether/base/error.h>
 #include <tether/base/version.h>
 #include <tether/board/target_probe.h>
+#include <tether/judge/flight_watch.h>
 #include <tether/os/machine.h>
 #include <tether/runner/trial_folder.h>
 #include <tether/sync/clock_plausibility.h>
@@ -347,6 +348,19 @@ TrialEnd TrialRun::fly(std::optional<MachineWatch>& machine) {
   hooks.on_joined = [&](std::size_t uav, const std::string& address, std::uint32_t process) {
     watched.joined(uav, address, process);
   };
+  std::vector<judge::FlightWatch> watches;
+  for (const auto& uav : spec_.scenario.uavs)
+    if (uav.sut.mission &&
+        std::ranges::any_of(uav.sut.mission->clauses, &mission::Clause::ends_flight))
+      watches.emplace_back(*uav.sut.mission, uav.placement.name, memory_.so_far());
+  if (!watches.empty())
+    hooks.killed = [&] {
+      std::optional<std::pair<SimTime, std::string>> first;
+      for (judge::FlightWatch& watched_flight : watches)
+        if (const auto miss = watched_flight.look(); miss && (!first || miss->at < first->first))
+          first.emplace(miss->at, miss->reason);
+      return first;
+    };
   hooks.threads_of = [&](std::size_t uav) { return watched.states(uav); };
   hooks.read_target = [&] { return read_targets(); };
   if (!sut_run_.counts.empty())

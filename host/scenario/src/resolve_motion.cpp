@@ -29,9 +29,22 @@ void drive(const MovingModel& moving, sim::World& world) {
   for (sim::Model& part : world.models) {
     if (part.name != moving.model && !is_nested_in(part, moving.model)) continue;
     part.is_static = false;
-    part.path = moving.path;
-    part.p_WO = p_WO;
+    part.path = sim::DrivenPath{moving.path, p_WO};
   }
+}
+
+void load(const CarriedPayload& carried, sim::World& world) {
+  std::vector<std::string_view> names;
+  for (sim::Uav& uav : world.uavs) {
+    names.push_back(uav.name);
+    const bool is_only = carried.uav.empty() && world.uavs.size() == 1;
+    if (uav.name == carried.uav || is_only) return uav.payloads.push_back(carried.payload);
+  }
+  fail(carried.at, "[[payload]]",
+       carried.uav.empty() ? "does not name its UAV. Add 'uav', because there are several."
+                           : fmt::format("names the UAV '{}', which the scenario does not have; {}",
+                                         carried.uav, allowed_hint(carried.uav, names)),
+       carried.uav);
 }
 
 }  // namespace
@@ -50,6 +63,10 @@ void resolve_motion(const Scenario& scenario, bool is_read_elsewhere, sim::World
   for (const MovingModel& moving : scenario.moving) {
     if (is_read_elsewhere) refuse(moving.at, "[[moving]]");
     drive(moving, world);
+  }
+  for (const CarriedPayload& carried : scenario.payloads) {
+    if (is_read_elsewhere) refuse(carried.at, "[[payload]]");
+    load(carried, world);
   }
 }
 

@@ -214,10 +214,19 @@ void change_paths(const Variation& variation, double value, sim::World& world) {
       quantity_of(variation).change(world, nullptr, &model, nullptr, value);
 }
 
+/// With the model or UAV of that name.
+void place_anchor(const std::string& name, const uav::Pose& now, const uav::Pose& before,
+                  sim::World& world) {
+  for (sim::PlacedAnchor& placed : world.anchors)
+    if (placed.anchor.name == name) placed.X_WA = now * (uav::inverse(before) * placed.X_WA);
+}
+
 void change_uavs(const Variation& variation, double value, sim::World& world) {
   const Quantity& quantity = quantity_of(variation);
   const auto change = [&](sim::Uav& uav) {
+    const uav::Pose before = uav.X_WB;
     quantity.change(world, &uav, nullptr, nullptr, value);
+    place_anchor(uav.name, uav.X_WB, before, world);
     if (uav.airframe.mass_kg <= 0.0)
       fail(variation,
            fmt::format("gives the UAV '{}' a mass of {:.6g} kg", uav.name, uav.airframe.mass_kg));
@@ -254,21 +263,16 @@ std::set<std::string> touching(const sim::World& world, const sim::Model& model)
   return names;
 }
 
-void place_anchor(const sim::Model& model, const uav::Pose& X_WM_before, sim::World& world) {
-  for (sim::PlacedAnchor& placed : world.anchors)
-    if (placed.anchor.name == model.name)
-      placed.X_WA = model.X_WM * (uav::inverse(X_WM_before) * placed.X_WA);
-}
-
 /// Those that are nested in a model stay in their places of it.
 void move_nested(sim::Model& model, const uav::Pose& X_WM_before, sim::World& world) {
-  model.p_WO = model.p_WO + (model.X_WM.p - X_WM_before.p);
+  const uav::Pose moved = model.X_WM * uav::inverse(X_WM_before);
+  if (model.path) model.path->p_WO = transform(moved, model.path->p_WO);
   for (sim::Model& part : world.models) {
     if (!is_nested_in(part, model.name)) continue;
     const uav::Pose before = part.X_WM;
     part.X_WM = model.X_WM * (uav::inverse(X_WM_before) * before);
-    part.p_WO = model.p_WO;
-    place_anchor(part, before, world);
+    if (part.path) part.path->p_WO = transform(moved, part.path->p_WO);
+    place_anchor(part.name, part.X_WM, before, world);
   }
 }
 
@@ -288,7 +292,7 @@ void place_model(const std::vector<const Variation*>& variations, std::uint64_t 
       quantity_of(*variation).change(world, nullptr, &model, nullptr, drawn.back().value);
     }
     if (!std::ranges::includes(allowed, touching(world, model))) continue;
-    place_anchor(model, before.X_WM, world);
+    place_anchor(model.name, model.X_WM, before.X_WM, world);
     move_nested(model, before.X_WM, world);
     values.insert(values.end(), drawn.begin(), drawn.end());
     return;

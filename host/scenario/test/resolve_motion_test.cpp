@@ -45,5 +45,28 @@ TEST(ResolveMotion, RefusesAModelThatItCannotDrive) {
   EXPECT_THAT(problem(moving_cart(), "cart", true), HasSubstr("embedded simulator"));
 }
 
+TEST(ResolveMotion, LoadsTheNamedUavOrTheOnlyOne) {
+  sim::World world;
+  world.uavs.resize(2);
+  world.uavs[0].name = "alpha";
+  world.uavs[1].name = "beta";
+  Scenario scenario;
+  scenario.payloads = {{.uav = "beta", .payload = {.mass_kg = 0.2}}};
+  resolve_motion(scenario, false, world);
+  EXPECT_TRUE(world.uavs[0].payloads.empty());
+  EXPECT_EQ(world.uavs[1].payloads.at(0).mass_kg, 0.2);
+  const auto problem = [&](const std::string& uav, bool is_read_elsewhere) -> std::string {
+    scenario.payloads[0].uav = uav;
+    return bad_file_error([&] { resolve_motion(scenario, is_read_elsewhere, world); }).what();
+  };
+  EXPECT_THAT(problem("bta", false), HasSubstr("did you mean 'beta'"));
+  EXPECT_THAT(problem("", false), HasSubstr("Add 'uav'"));
+  EXPECT_THAT(problem("beta", true), HasSubstr("embedded simulator"));
+  world.uavs.resize(1);
+  scenario.payloads[0].uav = "";
+  resolve_motion(scenario, false, world);
+  EXPECT_EQ(world.uavs[0].payloads.size(), 1u);
+}
+
 }  // namespace
 }  // namespace tether::scenario

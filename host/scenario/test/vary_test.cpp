@@ -54,7 +54,8 @@ double value(const std::vector<Varied>& values, const std::string& name) {
 TEST(Vary, PathsAndWindVaryWhereThereAreAny) {
   sim::World moving = world();
   moving.wind.v_WA_m_s = {2.0, 0.0, 0.0};
-  moving.models[2].path = uav::Path{{{{}, {}, 0.0}, {std::chrono::seconds(2), {0, 3, 0}, 0.0}}};
+  moving.models[2].path =
+      sim::DrivenPath{{{{{}, {}, 0.0}, {std::chrono::seconds(2), {0, 3, 0}, 0.0}}}, {}};
   const std::vector<Variation> all = {
       of("path_delay_s", "pillar", OneOf{{0.5}}), of("path_time_factor", "pillar", OneOf{{3.0}}),
       of("wind_factor", "", OneOf{{2.0}}), of("wind_yaw_deg", "", OneOf{{90.0}})};
@@ -125,6 +126,22 @@ TEST(Vary, AnAnchorMovesWithItsModel) {
   vary({of("model_y_m", "crate", OneOf{{2.0}})}, 1, false, flown);
   EXPECT_EQ(flown.models[1].X_WM.p, (Vec3{2.0, 2.0, 0.5}));
   EXPECT_EQ(flown.anchors[0].X_WA.p, (Vec3{2.0, 2.0, 0.5}));
+  flown.anchors[0] = {{.name = "alpha", .size_m = {}, .color_rgb = {}}, flown.uavs[0].X_WB};
+  vary({of("start_y_m", "alpha", OneOf{{0.5}})}, 1, false, flown);
+  EXPECT_EQ(flown.anchors[0].X_WA.p, flown.uavs[0].X_WB.p);
+}
+
+// A driven part of a model that turns about itself: it stays where it is in the model.
+TEST(Vary, ADrivenPartTurnsAboutItsOwnOriginAfterItsModelMoved) {
+  sim::World flown = world();
+  sim::Model lid = box("crate::lid", {2.0, 0.3, 1.5}, {0.2, 0.2, 0.1}, false);
+  lid.path = sim::DrivenPath{{}, lid.X_WM.p};
+  flown.models.push_back(lid);
+  vary({of("model_y_m", "crate", OneOf{{2.0}}), of("model_yaw_deg", "crate", OneOf{{90.0}})}, 1,
+       false, flown);
+  const sim::Model& moved = flown.models.back();
+  EXPECT_LT(norm(moved.X_WM.p - Vec3{1.7, 2.0, 1.5}), 1e-12);
+  EXPECT_LT(norm(moved.path->p_WO - moved.X_WM.p), 1e-12);
 }
 
 // The crate may stand on the floor, as in the file, but not in the pillar or the UAV.

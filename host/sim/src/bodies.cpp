@@ -16,7 +16,7 @@ std::vector<MovingBody> moving_bodies(const World& world) {
 
 DrivenState driven_state(const MovingBody& body, SimTime at) {
   const uav::PathState path = state_at(*body.model->path, at - SimTime{});
-  const uav::Pose X_WO{body.model->p_WO, {}};
+  const uav::Pose X_WO{body.model->path->p_WO, {}};
   const uav::Pose X_WO_now = moved(X_WO, path);
   const uav::Pose X_WB = X_WO_now * (inverse(X_WO) * (body.model->X_WM * body.link->X_ML));
   const uav::Vec3 arm = X_WB.p - X_WO_now.p;

@@ -61,7 +61,8 @@ uav::Catalogue make_catalogue(const World& world, const Uav& uav) {
   uav::Catalogue catalogue{uav.name, {}, {}};
   for (const Sensor& sensor : uav.sensors)
     catalogue.sensors.push_back(describe_sensor(world, sensor));
-  for (const PlacedAnchor& placed : world.anchors) catalogue.anchors.push_back(placed.anchor);
+  for (const PlacedAnchor& placed : world.anchors)
+    if (placed.anchor.name != uav.name) catalogue.anchors.push_back(placed.anchor);
   return catalogue;
 }
 

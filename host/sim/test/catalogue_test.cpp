@@ -34,6 +34,8 @@ TEST(Catalogue, ListsSensorsAndAnchorsWithTheirProperties) {
   EXPECT_EQ(catalogue.anchors[0].shape, uav::AnchorShape::kBox);
   EXPECT_EQ(catalogue.anchors[0].size_m, (uav::Vec3{0.4, 0.4, 0.4}));
   EXPECT_EQ(catalogue.anchors[0].color_rgb, (uav::Vec3{0.05, 0.15, 0.85}));
+  world.anchors[0].anchor.name = world.uavs[0].name;
+  EXPECT_TRUE(make_catalogue(world, world.uavs[0]).anchors.empty()) << "it is the anchor itself";
 }
 
 }  // namespace

@@ -89,16 +89,12 @@ Progress FlyThroughGatesTask::step(TaskContext& context) {
 
 /// The next image, and what has happened until it was computed.
 Status FlyThroughGatesTask::look(TaskContext& context) {
-  const auto camera = context.camera();
-  if (!camera) return camera.failure();
-  const auto tracker = context.tracker(gate(context).name);
-  if (!tracker) return tracker.failure();
-  const Result<uav::CameraSample> image = context.capture((*camera)->name);
-  if (!image) return image.failure();
+  const Result<Shot> shot = take_shot(context, gate(context).name);
+  if (!shot) return shot.failure();
   ++images_;
-  const std::optional<vision::Roi> roi = context.detect(**tracker, *image);
+  const std::optional<vision::Roi> roi = track(context, *shot);
   if (const Status followed = follow_motion(context); !followed) return followed;
-  if (roi) see(context, *roi, image->index, image->sampled_at);
+  if (roi) see(context, *roi, shot->image.index, shot->image.sampled_at);
   return ok_status();
 }
 
@@ -118,7 +114,6 @@ void FlyThroughGatesTask::see(TaskContext& context, const vision::Roi& roi,
                               std::uint64_t image_index, SimTime sampled_at) {
   const uav::SensorDescription& camera = **context.camera();
   const vision::RelativePosition position = vision::relative_position(camera, gate(context), roi);
-  context.note_roi(roi, image_index);
   context.note_estimate(gate(context).name, image_index, position, true);
   if (!position.distance_m || roi.cut_left_or_right) return;
   const PoseTrack::State& then = track_->at(sampled_at);

@@ -45,32 +45,28 @@ Progress LandOnTask::initialise(TaskContext& context) {
 
 Result<LandOnTask::View> LandOnTask::look_down(TaskContext& context) {
   client::Vehicle& vehicle = context.vehicle();
-  const auto camera = context.camera();
-  if (!camera) return camera.failure();
   const auto imu = context.sensor(options_.imu, uav::SensorKind::kImu);
   if (!imu) return imu.failure();
-  const auto tracker = context.tracker(anchor_);
-  if (!tracker) return tracker.failure();
-  const Result<uav::CameraSample> image = context.capture((*camera)->name);
-  if (!image) return image.failure();
+  const Result<Shot> shot = take_shot(context, anchor_);
+  if (!shot) return shot.failure();
   const auto height = vehicle.read<uav::RangeSample>(options_.range, client::Read::kLatest);
   if (!height) return height.failure();
   const auto reading = vehicle.read<uav::ImuSample>(options_.imu, client::Read::kLatest);
   if (!reading) return reading.failure();
-  View view{height->range_m, image->sampled_at, std::nullopt};
-  const std::optional<vision::Roi> roi = context.detect(**tracker, *image);
+  View view{height->range_m, shot->image.sampled_at, std::nullopt};
+  const std::optional<vision::Roi> roi = track(context, *shot);
   if (!roi) return view;
-  context.note_roi(*roi, image->index);
-  const auto& lens = std::get<uav::CameraProperties>((*camera)->properties).model;
+  const uav::SensorDescription& camera = shot->camera;
+  const auto& lens = std::get<uav::CameraProperties>(camera.properties).model;
   const uav::Vec3 ray_B =
-      rotate((*camera)->X_BS.q, rotate(uav::q_body_from_optical(), lens.unproject(roi->center)));
+      rotate(camera.X_BS.q, rotate(uav::q_body_from_optical(), lens.unproject(roi->center)));
   const uav::Quat q_WB = attitude(**imu, *reading);
   const uav::Quat level = uav::from_axis_angle({0, 0, 1}, -uav::yaw_rad(q_WB)) * q_WB;
   const uav::Vec3 ray_H = rotate(level, ray_B);
   if (ray_H.z >= 0.0) return view;
   const double scale = std::max(view.height_m, 0.0) / -ray_H.z;
   view.anchor_H_m = uav::Vec3{scale * ray_H.x, scale * ray_H.y, 0.0} +
-                    uav::Vec3{(*camera)->X_BS.p.x, (*camera)->X_BS.p.y, 0.0};
+                    uav::Vec3{camera.X_BS.p.x, camera.X_BS.p.y, 0.0};
   return view;
 }
 

@@ -84,21 +84,32 @@ Progress calibrate(TaskContext& context, const std::string& imu, const Rest& res
   }
 }
 
-Result<std::optional<Sight>> look(TaskContext& context, const std::string& anchor_name) {
+Result<Shot> take_shot(TaskContext& context, const std::string& anchor) {
   const auto camera = context.camera();
   if (!camera) return camera.failure();
+  const auto tracker = context.tracker(anchor);
+  if (!tracker) return tracker.failure();
+  Result<uav::CameraSample> image = context.capture((*camera)->name);
+  if (!image) return image.failure();
+  return Shot{**camera, **tracker, std::move(image).value()};
+}
+
+std::optional<vision::Roi> track(TaskContext& context, const Shot& shot) {
+  const std::optional<vision::Roi> roi = context.detect(shot.tracker, shot.image);
+  if (roi) context.note_roi(*roi, shot.image.index);
+  return roi;
+}
+
+Result<std::optional<Sight>> look(TaskContext& context, const std::string& anchor_name) {
   const auto anchor = context.anchor(anchor_name);
   if (!anchor) return anchor.failure();
-  const auto tracker = context.tracker(anchor_name);
-  if (!tracker) return tracker.failure();
-  const Result<uav::CameraSample> image = context.capture((*camera)->name);
-  if (!image) return image.failure();
-  const std::optional<vision::Roi> roi = context.detect(**tracker, *image);
+  const Result<Shot> shot = take_shot(context, anchor_name);
+  if (!shot) return shot.failure();
+  const std::optional<vision::Roi> roi = track(context, *shot);
   if (!roi) return std::optional<Sight>();
-  const vision::RelativePosition position = vision::relative_position(**camera, **anchor, *roi);
-  context.note_roi(*roi, image->index);
-  context.note_estimate(anchor_name, image->index, position, true);
-  return std::optional(Sight{image->sampled_at, position});
+  const vision::RelativePosition position = vision::relative_position(shot->camera, **anchor, *roi);
+  context.note_estimate(anchor_name, shot->image.index, position, true);
+  return std::optional(Sight{shot->image.sampled_at, position});
 }
 
 void fail_on(const Status& status, TaskOutcome& outcome) {

@@ -53,6 +53,17 @@ struct Rest {
 Progress calibrate(TaskContext& context, const std::string& imu, const Rest& rest, LoopLimit& limit,
                    DeadReckoning& reckoning);
 
+/// An image in which an anchor is to be tracked.
+struct Shot {
+  const uav::SensorDescription& camera;
+  vision::AnchorTracker& tracker;  ///< of the anchor
+  uav::CameraSample image;
+};
+/// Reads the next image of the task's camera.
+Result<Shot> take_shot(TaskContext& context, const std::string& anchor);
+/// Tracks the anchor, and annotates its ROI; none if it is not in the image.
+std::optional<vision::Roi> track(TaskContext& context, const Shot& shot);
+
 /// The anchor in one image.
 struct Sight {
   SimTime sampled_at;

@@ -33,6 +33,7 @@ class RacingVehicle : public client::Vehicle {
   ExecTime now() const override { return same_instant(at(states_.size() - 1)); }
   const uav::Catalogue& catalogue() const override { return catalogue_; }
   Status set_queue(std::string_view, std::uint32_t) override { return ok_status(); }
+  std::uint32_t queue_of(std::string_view) const override { return 64; }
   Result<uav::Sample> read_any(std::string_view, uav::SensorKind kind, client::Read read) override {
     if (kind == uav::SensorKind::kCamera) return uav::Sample(image());
     if (kind == uav::SensorKind::kOdometry) return uav::Sample(odometry());

@@ -69,7 +69,7 @@ TEST_F(AsIs, WhatTheProgramSawIsItsExecutionTime) {
       "print(time.monotonic() - 1000.0)\n");
   ASSERT_EQ(output.code, 0) << output.err << said();
   // The rest is the end of the interpreter.
-  EXPECT_NEAR(std::stod(said()), result()["synchronisation"]["st_at_end_s"].get<double>(), 0.03);
+  EXPECT_NEAR(std::stod(said()), result()["sync"]["st_at_end_s"].get<double>(), 0.03);
 }
 
 TEST_F(AsIs, ThreadsWaitForEachOtherAndForTheRun) {
@@ -115,7 +115,7 @@ TEST_F(AsIs, AProgramThatCrashesIsNamedAndNothingHangs) {
 
 TEST_F(AsIs, AProgramThatGoesOnIsEndedAtTheTimeLimit) {
   EXPECT_EQ(fly_python("import time\nwhile True: time.sleep(0.01)\n", 3).code, 1);
-  EXPECT_NEAR(result()["synchronisation"]["st_at_end_s"].get<double>(), 3.0, 0.01);
+  EXPECT_NEAR(result()["sync"]["st_at_end_s"].get<double>(), 3.0, 0.01);
 }
 
 TEST_F(AsIs, AForkedChildHasTheMachinesClock) {

@@ -94,5 +94,28 @@ TEST(Inspection, AComputerThatIsTooSlowMissesAClause) {
   }
 }
 
+// The UAV goes 0.5 m towards the box; twice, because the end must not depend on the machine.
+TEST(Inspection, AClauseCanEndTheFlight) {
+  const std::string mission = read_text(TETHER_SOURCE_DIR "/data/missions/inspect_room.toml");
+  std::vector<nlohmann::json> ends;
+  for (int flight = 0; flight < 2; ++flight) {
+    const TempFolder folder;
+    write_text(folder / "mission.toml", mission +
+                                            "\n[[clause]]\nname = \"fence\"\n"
+                                            "always = \"from_start <= 0.5 m\"\n"
+                                            "ends_flight = true\n");
+    const auto result = fly(folder, "inspect_room", 10, 1,
+                            {{"mission = \"inspect_room\"", "mission = \"../mission.toml\""}});
+    EXPECT_EQ(result["end"], "killed");
+    EXPECT_EQ(result["outcome"], "goal_missed");
+    EXPECT_NE(result["reason"].get<std::string>().find("\"fence\" ended the flight"),
+              std::string::npos)
+        << result["reason"];
+    EXPECT_TRUE(result["audit"]["passed"]) << result["audit"]["summary"];
+    ends.push_back(result["sync"]);
+  }
+  EXPECT_EQ(ends[0], ends[1]);
+}
+
 }  // namespace
 }  // namespace tether::system_test

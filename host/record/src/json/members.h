@@ -387,6 +387,10 @@ void members(auto& io, Maybe<Anchor> auto& m) {
   io("size_m", m.size_m);
   io("p_WA_m", m.p_WA_m);
   io("q_WA", m.q_WA);
+  if (io.has("uav", !m.uav.empty())) {
+    io("uav", m.uav);
+    io("p_BA_m", m.p_BA_m);
+  }
   if (!io.has("path", !m.path.empty())) return;
   io.list("path", m.path);
   io.flag("path_repeats", m.path_repeats);

@@ -28,9 +28,9 @@ bool is_free_running(const campaign::TrialResult& trial) {
 
 /// Of a flight that was cut, the record is not complete, and an audit of it says nothing.
 bool is_unsound(const campaign::TrialResult& trial) {
-  const bool has_ended = trial.end == campaign::kEndFinished ||
-                         trial.end == campaign::kEndTimeLimit ||
-                         trial.end == campaign::kEndBatteryEmpty;
+  const bool has_ended =
+      trial.end == campaign::kEndFinished || trial.end == campaign::kEndTimeLimit ||
+      trial.end == campaign::kEndBatteryEmpty || trial.end == campaign::kEndKilled;
   return (has_ended && trial.audit && !trial.audit->passed) || trial.sync.causality_violations > 0;
 }
 

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include <tether/record/png.h>
+#include <tether/record/tracks.h>
 #include <tether/report/camera_frame.h>
 
 // The region of interest (ROI) that the SUT reported for an image, and the true one, are searched
@@ -143,9 +144,9 @@ std::optional<TrueRoi> find_true_roi(const record::Record& record, const record:
   const auto camera = std::ranges::find_if(sensors, [&](const record::SensorInfo& candidate) {
     return candidate.uav == image.uav && candidate.name == image.sensor && candidate.camera;
   });
-  const auto X_WB = campaign::pose_at(record, image.uav, image.at);
+  const auto X_WB = record::pose_at(record, image.uav, image.at);
   if (anchor == anchors.end() || camera == sensors.end() || !X_WB) return std::nullopt;
-  const record::Anchor now = anchor_at(*anchor, image.at);
+  const record::Anchor now = record::AnchorTrack(*anchor, record).at(image.at);
   const auto* read = campaign::find_read(record, image.uav, image.sensor, image.index);
   const auto roi = read == nullptr ? campaign::true_roi(*camera, *X_WB, now)
                                    : campaign::roi_in_image(*read, *camera, *X_WB, now);

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <tether/record/tracks.h>
 #include <tether/uav/math.h>
 
 // The paths of several runs in one plot. Each run is reduced to a Way (path, yaw, dead reckoning).
@@ -120,11 +121,11 @@ Way way_of(const PlottedRun& run) {
 }
 
 /// The way of an anchor that moves.
-std::vector<Point> way_of(const record::Anchor& anchor, SimTime until) {
+std::vector<Point> way_of(const record::AnchorTrack& anchor, SimTime until) {
   std::vector<Point> way;
   for (std::size_t i = 0; i <= kPoints; ++i) {
-    const auto now = anchor_at(
-        anchor, SimTime{} + (until - SimTime{}) * static_cast<int>(i) / static_cast<int>(kPoints));
+    const auto now = anchor.at(SimTime{} + (until - SimTime{}) * static_cast<int>(i) /
+                                               static_cast<int>(kPoints));
     way.push_back({now.p_WA_m[0], now.p_WA_m[1]});
   }
   return way;
@@ -201,15 +202,15 @@ void add_ends(Drawing& drawing, std::span<const PlottedRun> runs, const std::vec
 }
 
 /// Anchors that move are drawn where they begin.
-std::string anchors_script(Drawing& drawing, const std::vector<record::Anchor>& anchors,
+std::string anchors_script(Drawing& drawing, const std::vector<record::AnchorTrack>& anchors,
                            SimTime until, double middle_y_m) {
   std::string labels;
   for (std::size_t i = 0; i < anchors.size(); ++i) {
-    const record::Anchor start = anchor_at(anchors[i], SimTime{});
+    const record::Anchor start = anchors[i].at(SimTime{});
     const std::vector<Point> outline = outline_of(start);
     drawing.add(block_of(fmt::format("anchor{}", i), outline), "with filledcurves closed",
                 Ink::kAnchor, "", "fillstyle solid 0.45 border");
-    if (!anchors[i].path.empty())
+    if (anchors[i].moves())
       drawing.add(block_of(fmt::format("anchor_path{}", i), way_of(anchors[i], until)),
                   "with lines linewidth 1 dashtype '.'", Ink::kAnchor, "");
     Bounds around;
@@ -223,15 +224,15 @@ std::string anchors_script(Drawing& drawing, const std::vector<record::Anchor>& 
   return labels;
 }
 
-Bounds bounds_of(const std::vector<Way>& ways, const std::vector<record::Anchor>& anchors) {
+Bounds bounds_of(const std::vector<Way>& ways, const std::vector<record::AnchorTrack>& anchors) {
   Bounds bounds;
   for (const Way& way : ways) {
     for (const Point& p : way.path) bounds.add(p);
     for (const std::vector<Point>& of_task : way.odometry)
       for (const Point& p : of_task) bounds.add(p);
   }
-  for (const record::Anchor& anchor : anchors) {
-    for (const Point& p : outline_of(anchor_at(anchor, SimTime{}))) bounds.add(p);
+  for (const record::AnchorTrack& anchor : anchors) {
+    for (const Point& p : outline_of(anchor.at(SimTime{}))) bounds.add(p);
   }
   return bounds;
 }
@@ -278,12 +279,13 @@ std::optional<Plot> path_plot(std::span<const PlottedRun> runs) {
   if (std::ranges::all_of(ways, [](const Way& way) { return way.path.empty(); }))
     return std::nullopt;
   const record::Record& first = *runs.front().record;
-  const std::vector<record::Anchor>& anchors = first.header.anchors;
+  std::vector<record::AnchorTrack> anchors;
+  for (const record::Anchor& anchor : first.header.anchors) anchors.emplace_back(anchor, first);
   const SimTime until =
       first.ground_truth.empty() ? SimTime{} : first.ground_truth.back().message.at;
   Bounds bounds = bounds_of(ways, anchors);
-  for (const record::Anchor& anchor : anchors)
-    if (!anchor.path.empty())
+  for (const record::AnchorTrack& anchor : anchors)
+    if (anchor.moves())
       for (const Point& p : way_of(anchor, until)) bounds.add(p);
   const int rows = key_rows(runs, ways);
   Frame frame{.top_px = 18 + 21 * rows,

@@ -6,7 +6,7 @@
 /// The keys of a scenario and of its tables.
 namespace tether::scenario {
 
-inline constexpr std::array<std::string_view, 19> kScenarioKeys = {"name",
+inline constexpr std::array<std::string_view, 20> kScenarioKeys = {"name",
                                                                    "description",
                                                                    "world",
                                                                    "step_ms",
@@ -24,7 +24,8 @@ inline constexpr std::array<std::string_view, 19> kScenarioKeys = {"name",
                                                                    "radio",
                                                                    "vary",
                                                                    "wind",
-                                                                   "moving"};
+                                                                   "moving",
+                                                                   "payload"};
 
 inline constexpr std::array<std::string_view, 16> kUavKeys = {"name",
                                                               "model",

@@ -38,13 +38,16 @@ void keep_first_uavs(Scenario& scenario, const std::string& count) {
                             "1 to {}",
                             scenario.uavs.size(), kUavCount, count, scenario.uavs.size()))
         .about(std::string(kUavCount));
-  const auto is_dropped = [&](const Variation& variation) {
-    const std::string_view owner = std::string_view(variation.of).substr(0, variation.of.find('.'));
+  const auto is_of_dropped = [&](std::string_view owner) {
     return std::any_of(scenario.uavs.begin() + static_cast<std::ptrdiff_t>(kept),
                        scenario.uavs.end(),
                        [&](const UavSetup& uav) { return uav.placement.name == owner; });
   };
-  std::erase_if(scenario.variations, is_dropped);
+  std::erase_if(scenario.variations, [&](const Variation& variation) {
+    return is_of_dropped(std::string_view(variation.of).substr(0, variation.of.find('.')));
+  });
+  std::erase_if(scenario.payloads,
+                [&](const CarriedPayload& payload) { return is_of_dropped(payload.uav); });
   scenario.uavs.resize(kept);
   std::erase_if(scenario.metrics, [&](const Metric& metric) {
     return std::ranges::none_of(

@@ -31,6 +31,18 @@ uav::Wind read_wind(const toml::Table& table) {
   return wind;
 }
 
+CarriedPayload read_payload(const toml::Table& table) {
+  constexpr toml::Range kMass_kg{.min = 0.0, .max = 100.0, .above_min = true};
+  constexpr toml::Range kAt_s{.min = 0.0, .max = kLongestRun_s};
+  CarriedPayload carried{.uav = table.text_or("uav", ""), .payload = {}, .at = table.where()};
+  carried.payload.mass_kg = table.number("mass_kg", kMass_kg);
+  if (table.has("from_s")) carried.payload.from = SimTime(table.duration("from_s", kAt_s));
+  if (table.has("until_s")) carried.payload.until = SimTime(table.duration("until_s", kAt_s));
+  if (carried.payload.until <= carried.payload.from)
+    table.fail("until_s", "must be later than 'from_s', which is 0 by default.");
+  return carried;
+}
+
 MovingModel read_moving(const toml::Table& table) {
   constexpr toml::Range kAt_s{.min = 0.0, .max = kLongestRun_s};
   constexpr toml::Range kYaw_deg{.min = -36'000.0, .max = 36'000.0};
@@ -53,6 +65,9 @@ void read_motion(const toml::Table& root, Scenario& scenario) {
     scenario.wind = read_wind(table);
     scenario.wind_at = table.where();
   }
+  for (const toml::Table& table :
+       root.tables_or_none("payload", {"uav", "mass_kg", "from_s", "until_s"}))
+    scenario.payloads.push_back(read_payload(table));
   std::set<std::string> names;
   for (const toml::Table& table : root.tables_or_none("moving", {"model", "repeats", "waypoint"})) {
     scenario.moving.push_back(read_moving(table));

@@ -39,6 +39,18 @@ TEST(ReadMotion, ReadsWindAndPaths) {
             (uav::Waypoint{std::chrono::milliseconds(2500), {1, 2, 0}, rad_from_deg(180.0)}));
 }
 
+TEST(ReadMotion, ReadsPayloads) {
+  const auto payloads = motion_of(
+                            "[[payload]]\nmass_kg = 0.2\nfrom_s = 1.5\nuntil_s = 3\n"
+                            "[[payload]]\nuav = \"beta\"\nmass_kg = 0.1\n")
+                            .payloads;
+  ASSERT_EQ(payloads.size(), 2U);
+  EXPECT_EQ(payloads[0].payload.from, SimTime(std::chrono::milliseconds(1500)));
+  EXPECT_EQ(payloads[0].payload.until, SimTime(std::chrono::seconds(3)));
+  EXPECT_EQ(payloads[1].uav, "beta");
+  EXPECT_EQ(payloads[1].payload.until, SimTime::max());
+}
+
 TEST(ReadMotion, RefusesWhatCannotMove) {
   const auto problem = [](const std::string& text) -> std::string {
     return bad_file_error([&] { motion_of(text); }).what();
@@ -50,6 +62,8 @@ TEST(ReadMotion, RefusesWhatCannotMove) {
   EXPECT_THAT(problem(std::string(kMoving) + kMoving), HasSubstr("another [[moving]]"));
   EXPECT_THAT(problem("[wind]\nvelocity_m_s = [0, 0, 1]\nturbulence = 1"),
               HasSubstr("no effect without a wind"));
+  EXPECT_THAT(problem("[[payload]]\nmass_kg = 0"), HasSubstr("mass_kg"));
+  EXPECT_THAT(problem("[[payload]]\nmass_kg = 1\nfrom_s = 2\nuntil_s = 2"), HasSubstr("until_s"));
   EXPECT_THAT(problem("[wind]\nvelocity_m_s = [100, 0, 0]"), HasSubstr("velocity_m_s"));
 }
 

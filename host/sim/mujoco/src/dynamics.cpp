@@ -14,6 +14,7 @@ Dynamics::Dynamics(const World& world, const WarningSink& warn, const MeshFiles&
     : world_(world),
       model_(make_physics_model(world, warn, meshes)),
       data_(make_data(*model_)),
+      scratch_(make_data(*model_)),
       recorder_(world),
       X_WB_(recorder_.layout().bodies()),
       motions_(recorder_.layout().uavs()),
@@ -44,6 +45,7 @@ void Dynamics::reset(std::uint64_t seed) {
     if (uav.energy) flight.meter.emplace(*uav.energy, uav.airframe, world_.gravity_m_s2);
   }
   now_ = SimTime{};
+  for (std::size_t i = 0; i < flights_.size(); ++i) carry(i);
   place_driven();
   read_engine();
   recorder_.reset(X_WB_);
@@ -56,6 +58,7 @@ void Dynamics::set_setpoint(std::size_t uav, const uav::Setpoint& setpoint) {
 
 void Dynamics::step() {
   recorder_.begin_step(X_WB_);
+  for (std::size_t i = 0; i < flights_.size(); ++i) carry(i);
   for (std::size_t i = 0; i < flights_.size(); ++i) fly(i);
   std::copy_n(data_->qvel, qvel_before_.size(), qvel_before_.begin());
   mj_step1(model_.get(), data_.get());
@@ -120,6 +123,17 @@ uav::Vec3 Dynamics::velocity_before(int engine_body, const uav::Vec3& p_W) const
   const mjtNum* qvel = qvel_before_.data() + qvel_address(body);
   const uav::Pose& X_WB = X_WB_[body];
   return vec3_from(qvel) + cross(rotate(X_WB.q, vec3_from(qvel + 3)), p_W - X_WB.p);
+}
+
+// What the UAV carries in the step that begins now.
+void Dynamics::carry(std::size_t uav) {
+  double load_kg = 0.0;
+  for (const Payload& payload : world_.uavs[uav].payloads)
+    if (payload.from <= now_ && now_ < payload.until) load_kg += payload.mass_kg;
+  if (load_kg == flights_[uav].load_kg) return;
+  flights_[uav].load_kg = load_kg;
+  model_->body_mass[engine_body(uav)] = world_.uavs[uav].airframe.mass_kg + load_kg;
+  mj_setConst(model_.get(), scratch_.get());
 }
 
 // The controller and the rotors.

@@ -54,9 +54,11 @@ class Dynamics {
     uav::Gusts gusts;
     std::optional<energy::Meter> meter{};
     uav::Vec3 force_W{}, torque_W{};  ///< of the rotors, in this step
+    double load_kg = 0.0;             ///< what it carries
   };
 
   void fly(std::size_t uav);
+  void carry(std::size_t uav);
   void apply_rotors(std::size_t uav);
   void drive();
   void place_driven();
@@ -68,6 +70,7 @@ class Dynamics {
   const World& world_;
   ModelPtr model_;
   DataPtr data_;
+  DataPtr scratch_;  // for the engine's constants, which depend on masses
   std::vector<Flight> flights_;
   std::vector<std::pair<std::size_t, MovingBody>> driven_;  // with their numbers
   StateRecorder recorder_;

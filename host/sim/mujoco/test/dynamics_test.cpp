@@ -37,6 +37,34 @@ TEST(DynamicsTest, HoversAndFollowsVelocityAndYawRateInTheHeadingFrame) {
   EXPECT_NEAR(dynamics.body_state(0).w_WB_B.z, 0.5, 0.01);
 }
 
+// A step's change of velocity is that of the same thrust on the greater mass. The controller, which
+// does not know the payload, then holds it by its integral.
+TEST(DynamicsTest, APayloadIsCarriedForItsTime) {
+  World world = test_world();
+  const double mass_kg = world.uavs[0].airframe.mass_kg, load_kg = 0.1 * mass_kg;
+  world.uavs[0].payloads = {
+      {load_kg, SimTime(std::chrono::seconds(1)), SimTime(std::chrono::seconds(9))}};
+  Dynamics dynamics(world, no_warnings());
+  std::vector<double> heights_m[2];
+  for (std::vector<double>& heights : heights_m) {
+    dynamics.reset(0);
+    run(dynamics, 1000);
+    const double before_m_s = dynamics.body_state(0).v_WB.z;
+    run(dynamics, 1);
+    const double change_m_s = dynamics.body_state(0).v_WB.z - before_m_s;
+    EXPECT_NEAR(change_m_s, -1e-3 * world.gravity_m_s2 * load_kg / (mass_kg + load_kg), 1e-5);
+    run(dynamics, 7000);
+    EXPECT_LT(std::abs(dynamics.body_state(0).v_WB.z), 0.01) << "the controller holds it";
+    heights.push_back(dynamics.body_state(0).p_WB.z);
+    run(dynamics, 1100);
+    EXPECT_GT(dynamics.body_state(0).v_WB.z, 0.02) << "it was dropped";
+    run(dynamics, 9000);
+    EXPECT_LT(std::abs(dynamics.body_state(0).v_WB.z), 0.01);
+    heights.push_back(dynamics.body_state(0).p_WB.z);
+  }
+  EXPECT_EQ(heights_m[0], heights_m[1]) << "a reset takes it off";
+}
+
 TEST(DynamicsTest, AWallStopsTheUav) {
   World world = test_world();
   world.models.push_back(box_model("wall", {2.0, 0.0, 1.5}, {0.2, 6.0, 3.0}, {1.0, 1.0, 1.0}));
@@ -147,12 +175,13 @@ World world_with_platform() {
   World world = test_world();
   Model platform = box_model("platform", {0.0, 0.0, 0.45}, {1.2, 1.2, 0.1}, {1.0, 0.0, 0.0}, false);
   using std::chrono::seconds;
-  platform.path = uav::Path{{{seconds(0), {0, 0, 0}, 0.0},
-                             {seconds(2), {1, 0, 0}, 1.5},
-                             {seconds(4), {1, 1, 0.3}, 3.0},
-                             {seconds(6), {0, 1, 0}, 4.5},
-                             {seconds(8), {0, 0, 0}, 2.0 * std::numbers::pi}},
-                            true};
+  const uav::Path path{{{seconds(0), {0, 0, 0}, 0.0},
+                        {seconds(2), {1, 0, 0}, 1.5},
+                        {seconds(4), {1, 1, 0.3}, 3.0},
+                        {seconds(6), {0, 1, 0}, 4.5},
+                        {seconds(8), {0, 0, 0}, 2.0 * std::numbers::pi}},
+                       true};
+  platform.path = DrivenPath{path, {}};
   world.models.push_back(std::move(platform));
   return world;
 }

@@ -194,15 +194,25 @@ void add_uavs(const WorldRequest& request, const WarningSink& warn, World& world
   }
 }
 
-/// A receiver needs a place; where it is changes no flight.
-void warn_without_place(const World& world, const WarningSink& warn) {
-  if (world.place || !warn) return;
-  for (const Uav& uav : world.uavs)
-    for (const Sensor& sensor : uav.sensors)
-      if (sensor.kind() == uav::SensorKind::kNavSat)
-        return warn({Consequence::kNoEffect, sensor.declared_at, "sensor '" + sensor.name + "'",
-                     "measures latitude and longitude, but the world has no "
-                     "<spherical_coordinates>: it is put near Zurich, as PX4's worlds are"});
+/// What sensors of the Earth measure although the world does not say it. None of it changes a
+/// flight by itself.
+void warn_of_earth(const World& world, const WarningSink& warn) {
+  if (!warn) return;
+  const auto warn_first = [&](uav::SensorKind kind, const std::string& what) {
+    for (const Uav& uav : world.uavs)
+      for (const Sensor& sensor : uav.sensors)
+        if (sensor.kind() == kind)
+          return warn(
+              {Consequence::kNoEffect, sensor.declared_at, "sensor '" + sensor.name + "'", what});
+  };
+  if (!world.place)
+    warn_first(uav::SensorKind::kNavSat,
+               "measures latitude and longitude, but the world has no <spherical_coordinates>: it "
+               "is put near Zurich, as PX4's worlds are");
+  if (world.place && world.magnetic_field_T == World{}.magnetic_field_T)
+    warn_first(uav::SensorKind::kMagnetometer,
+               "measures SDF's default field, which is not that of the world's place. Give the "
+               "world the <magnetic_field> of its <spherical_coordinates>");
 }
 
 }  // namespace
@@ -235,7 +245,7 @@ World load_world(const WorldRequest& request, const WarningSink& any_warn) {
         world.file = source.file();
         world.sdf_files = source.sdf_files();
         add_uavs(request, warn, world);
-        warn_without_place(world, warn);
+        warn_of_earth(world, warn);
         for (const std::string& name : request.anchors)
           world.anchors.push_back(find_anchor(source, world, name, request.anchors_at));
         world.files.merge(source.files());

@@ -56,6 +56,10 @@ inline tether_odometry_sample to_c(const uav::OdometrySample& sample) {
           to_c(sample.attitude_stddev_rad),
           to_c(sample.velocity_stddev_m_s)};
 }
+/// Shows the distances of `sample`.
+inline tether_scan to_c(const uav::ScanSample& sample) {
+  return {to_ns(sample.sampled_at), sample.index, sample.ranges_m.size(), sample.ranges_m.data()};
+}
 
 /// `catalogue`: that of the UAV.
 inline tether_battery_sample to_c(const uav::BatterySample& sample,

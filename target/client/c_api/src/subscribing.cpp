@@ -77,6 +77,36 @@ tether_status tether_subscribe_range(tether_vehicle* vehicle, const char* sensor
   return subscribe_struct<tether::uav::RangeSample>(vehicle, sensor, on_sample, user, out);
 }
 
+tether_status tether_subscribe_navsat(tether_vehicle* vehicle, const char* sensor,
+                                      tether_on_navsat on_sample, void* user,
+                                      tether_subscription** out) noexcept {
+  return subscribe_struct<tether::uav::NavSatSample>(vehicle, sensor, on_sample, user, out);
+}
+
+tether_status tether_subscribe_magnetometer(tether_vehicle* vehicle, const char* sensor,
+                                            tether_on_magnetometer on_sample, void* user,
+                                            tether_subscription** out) noexcept {
+  return subscribe_struct<tether::uav::MagnetometerSample>(vehicle, sensor, on_sample, user, out);
+}
+
+tether_status tether_subscribe_barometer(tether_vehicle* vehicle, const char* sensor,
+                                         tether_on_barometer on_sample, void* user,
+                                         tether_subscription** out) noexcept {
+  return subscribe_struct<tether::uav::BarometerSample>(vehicle, sensor, on_sample, user, out);
+}
+
+tether_status tether_subscribe_odometry(tether_vehicle* vehicle, const char* sensor,
+                                        tether_on_odometry on_sample, void* user,
+                                        tether_subscription** out) noexcept {
+  return subscribe_struct<tether::uav::OdometrySample>(vehicle, sensor, on_sample, user, out);
+}
+
+tether_status tether_subscribe_scan(tether_vehicle* vehicle, const char* sensor,
+                                    tether_on_scan on_scan, void* user,
+                                    tether_subscription** out) noexcept {
+  return subscribe_struct<tether::uav::ScanSample>(vehicle, sensor, on_scan, user, out);
+}
+
 tether_status tether_subscription_status(const tether_subscription* subscription) noexcept {
   if (!are_given(subscription)) return TETHER_INVALID;
   return guarded([&] {

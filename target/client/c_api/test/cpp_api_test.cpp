@@ -34,7 +34,7 @@ class CppApi : public testing::Test {
 
 TEST_F(CppApi, KnowsTheCatalogue) {
   EXPECT_STREQ(vehicle_.uav_name(), "uav1");
-  ASSERT_EQ(vehicle_.sensor_count(), 6u);
+  ASSERT_EQ(vehicle_.sensor_count(), 11u);
   const auto camera = vehicle_.find_sensor("camera");
   ASSERT_TRUE(camera.has_value());
   EXPECT_EQ(camera->kind(), api::SensorKind::kCamera);
@@ -167,6 +167,47 @@ TEST_F(CppApi, SubscribesWithAnyCallable) {
   const auto refused = vehicle_.subscribe_imu("imu", [](const api::ImuSample&) {});
   ASSERT_FALSE(refused.ok());
   EXPECT_EQ(refused.failure().code(), api::Code::kInvalid);
+}
+
+TEST_F(CppApi, SubscribesToEveryKindOfNavigation) {
+  fake_->concurrent = true;
+  uav::NavSatSample position;
+  position.latitude_deg = 48.0;
+  uav::OdometrySample pose;
+  pose.p_WS.z = 3.0;
+  fake_->navigation = {position, uav::MagnetometerSample{from_ns<SimTime>(2), 2, {1e-5, 2e-5, 0}},
+                       uav::BarometerSample{from_ns<SimTime>(3), 3, 9e4, 900.0}, pose,
+                       uav::ScanSample{from_ns<SimTime>(5), 5, {1.5F, 2.5F}}};
+  std::vector<double> got;
+  const auto deliver_one = [&](auto subscribe) {
+    fake_->reads_left = 1;
+    const auto subscription = subscribe();
+    ASSERT_TRUE(subscription.ok());
+    while (subscription->status().ok()) std::this_thread::yield();
+  };
+  deliver_one([&] {
+    return vehicle_.subscribe_navsat(
+        "gps", [&](const api::NavSatSample& s) { got.push_back(s.latitude_deg); });
+  });
+  deliver_one([&] {
+    return vehicle_.subscribe_magnetometer(
+        "compass", [&](const api::MagnetometerSample& s) { got.push_back(s.field_T.y); });
+  });
+  deliver_one([&] {
+    return vehicle_.subscribe_barometer(
+        "air", [&](const api::BarometerSample& s) { got.push_back(s.pressure_Pa); });
+  });
+  deliver_one([&] {
+    return vehicle_.subscribe_odometry(
+        "pose", [&](const api::OdometrySample& s) { got.push_back(s.p_WS.z); });
+  });
+  deliver_one([&] {
+    return vehicle_.subscribe_scan("lidar", [&](const api::Scan& s) {
+      got.insert(got.end(), {static_cast<double>(s.index), static_cast<double>(s.rays),
+                             static_cast<double>(s.ranges_m[1])});
+    });
+  });
+  EXPECT_EQ(got, (std::vector<double>{48.0, 2e-5, 9e4, 3.0, 5.0, 2.0, 2.5}));
 }
 
 TEST_F(CppApi, FailuresKeepTheirMessageAfterTheNextCall) {

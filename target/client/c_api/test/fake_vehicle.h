@@ -36,7 +36,12 @@ class FakeVehicle final : public client::Vehicle {
          {},
          10.0,
          uav::CameraProperties{
-             model, uav::CameraKind::kSegmentation, 0.0, 0.0, {"wall", "blue_box"}}}};
+             model, uav::CameraKind::kSegmentation, 0.0, 0.0, {"wall", "blue_box"}}},
+        {"gps", {}, 5.0, uav::NavSatProperties{}},
+        {"compass", {}, 10.0, uav::MagnetometerProperties{}},
+        {"air", {}, 10.0, uav::BarometerProperties{}},
+        {"pose", {}, 50.0, uav::OdometryProperties{}},
+        {"lidar", {}, 10.0, uav::ScanProperties{}}};
     catalogue_.anchors = {{"blue_box", uav::AnchorShape::kBox, {0.4, 0.5, 0.6}, {0.05, 0.15, 0.85}},
                           {"ball", uav::AnchorShape::kSphere, {0.2, 0.2, 0.2}, {1.0, 0.0, 0.0}}};
     catalogue_.battery_capacity_C = 7200.0;
@@ -53,7 +58,10 @@ class FakeVehicle final : public client::Vehicle {
                                client::Read read) override {
     if (kind == uav::SensorKind::kCamera) return answer(sensor, read, image);
     if (kind == uav::SensorKind::kImu) return answer(sensor, read, imu);
-    return answer(sensor, read, range);
+    if (kind == uav::SensorKind::kRange) return answer(sensor, read, range);
+    for (const uav::Sample& sample : navigation)
+      if (static_cast<uav::SensorKind>(sample.index()) == kind) return answer(sensor, read, sample);
+    return Failure{Failure::Kind::kInvalid, "nothing was put in"};
   }
   Status set_queue(std::string_view sensor, std::uint32_t depth) override {
     queues.emplace_back(sensor, depth);
@@ -106,6 +114,7 @@ class FakeVehicle final : public client::Vehicle {
   uav::CameraSample image{from_ns<SimTime>(11), 3, 4, 2, {}};
   uav::ImuSample imu{from_ns<SimTime>(12), 4, {1, 2, 3}, {4, 5, 6}, {0.5, -0.5, 0.5, -0.5}};
   uav::RangeSample range{from_ns<SimTime>(13), 5, 1.5};
+  std::vector<uav::Sample> navigation;  ///< one of each other kind that is read
   std::vector<std::pair<std::string, std::uint32_t>> queues;
   std::vector<std::pair<std::string, client::Read>> reads;
   std::vector<uav::VelocityCommand> commands;

@@ -128,6 +128,13 @@ Status InteractingVehicle::set_queue(std::string_view sensor, std::uint32_t dept
   return ok_status();
 }
 
+std::uint32_t InteractingVehicle::queue_of(std::string_view sensor) const {
+  const uav::SensorDescription* const found = catalogue_.find_sensor(sensor);
+  return found == nullptr
+             ? 1
+             : queues_[static_cast<std::size_t>(found - catalogue_.sensors.data())].load();
+}
+
 Result<uav::Sample> InteractingVehicle::read_any(std::string_view sensor, uav::SensorKind kind,
                                                  Read read) {
   const uav::SensorDescription* const found = catalogue_.find_sensor(sensor);

@@ -40,6 +40,7 @@ class InteractingVehicle : public Vehicle {
  public:
   const uav::Catalogue& catalogue() const final { return catalogue_; }
   Status set_queue(std::string_view sensor, std::uint32_t depth) final;
+  std::uint32_t queue_of(std::string_view sensor) const final;
   Result<uav::Sample> read_any(std::string_view sensor, uav::SensorKind kind, Read read) final;
   Result<uav::BatterySample> read_battery() final;
   Status command_velocity(const uav::VelocityCommand& command) final;

@@ -39,4 +39,17 @@ Result<RadioMessage> Vehicle::receive(Duration) {
   return kNoRadio;
 }
 
+Duration most_apart(const uav::Catalogue& catalogue, const std::vector<std::string_view>& sensors) {
+  double highest_rate_hz = 0.0;
+  bool own_stamps = false;
+  for (const std::string_view name : sensors) {
+    const uav::SensorDescription* const sensor = catalogue.find_sensor(name);
+    if (sensor == nullptr) continue;
+    highest_rate_hz = std::max(highest_rate_hz, sensor->rate_hz);
+    own_stamps |= sensor->own_stamps;
+  }
+  return own_stamps && highest_rate_hz > 0.0 ? duration_from_seconds(0.5 / highest_rate_hz)
+                                             : Duration(0);
+}
+
 }  // namespace tether::client

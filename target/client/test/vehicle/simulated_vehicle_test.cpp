@@ -107,6 +107,8 @@ TEST_F(SimulatedVehicleTest, ReadsFromAQueueWhereOneIsSet) {
   ASSERT_TRUE(all) << all.failure().message;
   ASSERT_EQ(all->size(), 3u);
   EXPECT_EQ(all->back().index, 3u);
+  EXPECT_EQ(vehicle_->queue_of("down"), 5u);
+  EXPECT_EQ(vehicle_->queue_of("nose"), 1u);
   for (const Request& request : coordinator_->requests())
     EXPECT_EQ(std::get<link::ReadSensor>(request.body).queue, 5u);
 }
@@ -121,6 +123,36 @@ TEST_F(SimulatedVehicleTest, ReadsSensorsOfOneInstantTogether) {
   ASSERT_TRUE(both) << both.failure().message;
   EXPECT_EQ((*both)[0].sampled_at, (*both)[1].sampled_at);
   EXPECT_EQ(coordinator_->requests().size(), 3u);
+}
+
+// A sensor that is faster than the program reads would never be empty.
+TEST_F(SimulatedVehicleTest, ReadsAtMostTheQueueWhateverTheStampsSay) {
+  start(
+      [](const Request& r) {
+        uav::CameraSample sample = kImage;
+        sample.sampled_at = SimTime(std::chrono::seconds(9));
+        return one(Reply{r.sequence, r.issued_at, sample});
+      },
+      false, true);
+  ASSERT_TRUE(vehicle_->set_queue("camera", 3).ok());
+  EXPECT_EQ(read_all<uav::CameraSample>(*vehicle_, "camera")->size(), 3u);
+}
+
+// The stamps of the first driver are 8 ms late, and image 0 of the second was lost.
+TEST_F(SimulatedVehicleTest, PairsTheNearestStampsOfDrivers) {
+  start(
+      [](const Request& r) {
+        const std::int64_t stamps_ms[] = {8, 33, 41};
+        uav::CameraSample sample = kImage;
+        sample.sampled_at = SimTime(std::chrono::milliseconds(stamps_ms[r.sequence - 1]));
+        return one(Reply{r.sequence, from_ns<ExecTime>(200'000'000), sample});
+      },
+      false, true);
+  const auto both = read_together<uav::CameraSample>(*vehicle_, {"camera", "camera"});
+  ASSERT_TRUE(both) << both.failure().message;
+  EXPECT_EQ(to_ns((*both)[0].sampled_at) - to_ns((*both)[1].sampled_at), 8'000'000);
+  EXPECT_EQ(coordinator_->requests().size(), 3u);
+  EXPECT_EQ(most_apart(vehicle_->catalogue(), {"down", "imu"}), Duration(0));
 }
 
 TEST_F(SimulatedVehicleTest, SendsNothingForWrongArguments) {

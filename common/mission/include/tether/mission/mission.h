@@ -55,6 +55,9 @@ struct Clause {
   Duration hold{0};
   std::optional<Duration> within;  ///< from the start of what it is about
   std::optional<Duration> before;  ///< from the start of the mission
+  /// The flight ends where the condition is first missed. Only of kAlways and kNever without a
+  /// share, about the whole mission and a quantity of the ground truth.
+  bool ends_flight = false;
 };
 
 struct Mission {

@@ -39,6 +39,8 @@ struct Quantity {
   bool needs_battery() const { return dimension == Dimension::kEnergy || name == "charge_left"; }
   /// Of the messages between UAVs.
   bool is_of_radio() const { return name == "delivery_ratio" || name == "information_age"; }
+  /// Of the ground truth: known at each instant of the flight.
+  bool is_of_truth() const { return !is_event && !needs_battery() && !is_of_radio(); }
   /// Its value is 0 at the start of the time of a clause.
   bool counts_from_start() const { return dimension == Dimension::kEnergy; }
 };

@@ -58,6 +58,8 @@ class Gusts {
   double dt_s_;
   std::uint64_t seed_, stream_, steps_ = 0;
   Filter along_, across_, up_;  // each of variance 1 and 1/2
+  Turbulence turbulence_;       // at this height
+  double turbulence_at_ft_ = 0.0;
 };
 
 }  // namespace tether::uav

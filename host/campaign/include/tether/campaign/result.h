@@ -51,6 +51,7 @@ inline constexpr std::string_view kEndInterrupted = "interrupted";
 inline constexpr std::string_view kEndFinished = "finished";
 inline constexpr std::string_view kEndTimeLimit = "time_limit";
 inline constexpr std::string_view kEndBatteryEmpty = "battery_empty";
+inline constexpr std::string_view kEndKilled = "killed";  ///< by a clause that ends the flight
 
 /// One SUT: its name and version, and what it reported about its task.
 struct SutResult {

@@ -22,12 +22,6 @@ struct PixelRect {
   friend bool operator==(const PixelRect&, const PixelRect&) = default;
 };
 
-/// X_WB of a UAV at an instant, interpolated between the two nearest ground truths: the position
-/// linearly, the attitude along the shortest arc. Up to one ground-truth period before the first or
-/// after the last, that one's pose; beyond that, and for an unknown UAV, none.
-std::optional<uav::Pose> pose_at(const record::Record& record, const std::string& uav,
-                                 SimTime instant);
-
 /// The pose of a camera's body-style frame S in W.
 /// @pre camera.camera has a value.
 uav::Pose camera_pose(const record::SensorInfo& camera, const uav::Pose& X_WB);

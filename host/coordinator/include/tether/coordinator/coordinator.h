@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <tether/autopilot/flight_controller.h>
@@ -99,6 +100,7 @@ enum class RunEnd {
   kRecordFailed,   ///< the record could not be written; it has no end
   kTimingDiffers,  ///< a call or a stage of a SUT is not the one whose time is replayed
   kFlooded,        ///< a SUT sent too many messages by radio; the others have finished since
+  kKilled,         ///< `killed` of the caller found a reason in the flight
 };
 std::string_view name(RunEnd end);
 
@@ -176,6 +178,10 @@ struct RunHooks {
   /// continue.
   std::function<std::optional<Ending>()> should_stop;
   std::function<void(const RunStatus&)> on_status;
+  /// Why the flight must end, and since when: at an instant of a message that was recorded since
+  /// the last call. Must depend on recorded messages only: the run then always ends at the same ST,
+  /// some steps later. Called after each advance of ST.
+  std::function<std::optional<std::pair<SimTime, std::string>>()> killed;
   /// A connection was rejected, with the reason in one line.
   std::function<void(const std::string& address, const std::string& reason)> on_refused;
   /// With clocks "counted": how long the SUT of that UAV has computed so far, in ET, and what the

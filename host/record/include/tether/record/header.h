@@ -36,9 +36,9 @@ struct Anchor {
   bool path_repeats = false;
   Duration path_delay{0};
   double p_WO_m[3] = {};  ///< about which the path turns it; only with a path
+  std::string uav{};      ///< the UAV that it is; empty: a model of the world
+  double p_BA_m[3] = {};  ///< of its centre in that UAV's body, whose axes are its own
 };
-/// Where it is at that instant, as an anchor without a path.
-Anchor anchor_at(const Anchor& anchor, SimTime at);
 /// Mounting and intrinsics of a camera, for projections into its images.
 struct CameraInfo {
   double p_BS_m[3] = {};  ///< mounting in the UAV's body B; S is body-style (x forward)

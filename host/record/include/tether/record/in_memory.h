@@ -19,7 +19,9 @@ class RecordInMemory : public Recorder {
   void flush() override {}
   void write(const Footer& footer) override;
 
-  /// What was written so far; complete if it has a footer.
+  /// What was written so far.
+  const Record& so_far() const { return record_; }
+  /// The same; complete if it has a footer.
   Record take() { return std::move(record_); }
 
  private:

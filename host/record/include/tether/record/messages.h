@@ -295,7 +295,7 @@ struct TopicCount {
 /// End of the run: written last (metadata record "tether.end"). A record without it is incomplete.
 struct Footer {
   /// "finished", "time_limit", "sut_lost", "sut_hung", "simulator_lost", "interrupted",
-  /// "battery_empty", "timing_differs", "flooded".
+  /// "battery_empty", "timing_differs", "flooded", "killed".
   std::string end;
   std::string reason;  ///< one line
   SimTime st_at_end;

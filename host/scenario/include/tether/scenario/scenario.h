@@ -120,6 +120,13 @@ struct MovingModel {
   FileLocation at{};
 };
 
+/// What a UAV carries for a time.
+struct CarriedPayload {
+  std::string uav;  ///< empty: the only one
+  sim::Payload payload;
+  FileLocation at{};
+};
+
 /// Replaces a value of a scenario file.
 struct Setting {
   /// Path of a key that the file has, from its top or from [[condition]] or [[uav]]:
@@ -167,6 +174,7 @@ struct Scenario {
   std::optional<uav::Wind> wind{};    ///< none: that of the world
   FileLocation wind_at{};
   std::vector<MovingModel> moving{};
+  std::vector<CarriedPayload> payloads{};
   std::vector<Variation> variations{};  ///< what differs from flight to flight
   std::vector<std::string> anchors;
   FileLocation anchors_at{};          ///< of their key; empty: there is none

@@ -103,14 +103,18 @@ struct Link {
   std::vector<Collision> collisions;
 };
 
+/// How a model is driven.
+struct DrivenPath : uav::Path {
+  uav::Vec3 p_WO{};  ///< about which it turns: the origin of the outermost model that is driven
+};
+
 struct Model {
   std::string name;
   uav::Pose X_WM;
   bool is_static = false;  ///< a dynamic model's links are free bodies; joints are warned about
   std::vector<Link> links;
   /// Of a driven model, which is dynamic: it moves so from `X_WM` on, whatever it meets.
-  std::optional<uav::Path> path{};
-  uav::Vec3 p_WO{};  ///< about which the path turns it: the origin of its outermost model
+  std::optional<DrivenPath> path{};
 };
 
 enum class LightKind { kPoint, kDirectional, kSpot };
@@ -226,6 +230,13 @@ struct Sensor {
   uav::SensorKind kind() const { return static_cast<uav::SensorKind>(model.index()); }
 };
 
+/// What a UAV carries for a time: a point at its centre of mass. Its controller does not know it.
+struct Payload {
+  double mass_kg = 0.0;            ///< ≥ 0
+  SimTime from{};                  ///< the first step with it begins here or later
+  SimTime until = SimTime::max();  ///< the first step without it begins here or later
+};
+
 /// A UAV of the scene: its model (visuals and collisions of its body link), its airframe and its
 /// sensors.
 struct Uav {
@@ -237,9 +248,10 @@ struct Uav {
   /// That of its SDF file; none: it has none. Used only if `energy` is made from it.
   std::optional<energy::Battery> battery{};
   std::optional<energy::Model> energy{};  ///< none: energy is not simulated
+  std::vector<Payload> payloads{};
 };
 
-/// An anchor: a model of the world that SUTs receive in their catalogue.
+/// An anchor: a model of the world, or a UAV, that SUTs receive in their catalogue.
 struct PlacedAnchor {
   uav::Anchor anchor;
   uav::Pose X_WA;  ///< its centre, at ST 0
@@ -298,7 +310,7 @@ struct WorldOptions {
 struct WorldRequest {
   std::filesystem::path world;  ///< SDF file with one <world>
   std::vector<UavPlacement> uavs;
-  std::vector<std::string> anchors;  ///< names of models of the world
+  std::vector<std::string> anchors;  ///< names of models of the world, or of UAVs
   FileLocation anchors_at{};         ///< where they are requested; empty: in no file
   WorldOptions options{};
 };

@@ -59,7 +59,7 @@ uav::Pose start_pose(const UavPlacement& placement);
 /// The UAV of a model file, without a name or place.
 Uav read_uav(const SdfSource& source, double gravity_m_s2, const WarningSink& warn);
 
-/// The model `name` of the world as an anchor.
+/// The model or UAV `name` of the world as an anchor.
 /// @throws Error(kBadFile) about `name`: not a model, or not one untextured box, cylinder or
 /// sphere.
 PlacedAnchor find_anchor(const SdfSource& source, const World& world, const std::string& name,

@@ -63,5 +63,22 @@ TEST(Anchor, OfSeveralBoxesIsTheBoxAroundThem) {
   EXPECT_LT(uav::norm(anchors[0].X_WA.p - Vec3{4.0, 0.1, 2.0}), 1e-12);
 }
 
+TEST(Anchor, OfAUavIsTheBoxAroundItsShapesInTheColourOfTheLargest) {
+  const ScratchFolder folder;
+  folder.write("t.png", "png");
+  const auto file = folder.write("w.sdf", world_sdf(kAnchors));
+  const std::filesystem::path model =
+      std::filesystem::path(TETHER_SOURCE_DIR) / "data/models/hummingbird/model.sdf";
+  const World world = load({file, {{"scout", model, {3, 0, 1}, 0.0}}, {"scout"}}).world;
+  ASSERT_EQ(world.anchors.size(), 1u);
+  const uav::Anchor& anchor = world.anchors[0].anchor;
+  EXPECT_EQ(anchor.name, "scout");
+  EXPECT_EQ(anchor.shape, uav::AnchorShape::kBox);
+  EXPECT_NEAR(anchor.size_m.x, 0.54, 1e-9);  // from rotor to rotor
+  EXPECT_NEAR(anchor.size_m.y, 0.54, 1e-9);
+  EXPECT_LT(uav::norm(anchor.color_rgb - Vec3{0.85, 0.42, 0.08}), 1e-6);
+  EXPECT_NEAR(world.anchors[0].X_WA.p.x, 3.0, 1e-9);
+}
+
 }  // namespace
 }  // namespace tether::sim

@@ -101,6 +101,23 @@ TEST_F(SdfNavigation, AReceiverNeedsAPlace) {
   EXPECT_THAT(warnings(with_sensor("magnetometer", "<magnetometer/>")), IsEmpty());
 }
 
+TEST_F(SdfNavigation, AMagnetometerNeedsTheFieldOfThePlace) {
+  const auto model = folder_.write("compass.sdf", with_sensor("magnetometer", "<magnetometer/>"));
+  const auto warnings_in = [&](const std::string& inside) {
+    std::vector<std::string> lines;
+    for (const Warning& warning :
+         load({folder_.write("earth.sdf", world_sdf(inside)), {{"a", model, {}, 0.0}}, {}})
+             .warnings)
+      lines.push_back(to_line(warning));
+    return lines;
+  };
+  const std::string place =
+      "<spherical_coordinates><latitude_deg>60</latitude_deg>"
+      "<longitude_deg>10</longitude_deg></spherical_coordinates>";
+  EXPECT_THAT(warnings_in(place), Contains(HasSubstr("SDF's default field")));
+  EXPECT_THAT(warnings_in(place + "<magnetic_field>1e-6 1.5e-5 -5e-5</magnetic_field>"), IsEmpty());
+}
+
 TEST_F(SdfNavigation, ReadsThePlaceAndTheFieldOfTheWorld) {
   const auto load_with = [&](const std::string& inside) {
     return load({folder_.write("earth.sdf", world_sdf(inside)), {}, {}});

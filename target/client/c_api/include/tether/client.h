@@ -373,6 +373,7 @@ const uint16_t* tether_image_labels(const tether_image* image) TETHER_NOEXCEPT;
 
 /// Reads an image of each of several cameras, all of one instant: a stereo pair, or colour and
 /// depth. The cameras need one rate and phase, and a queue of a few images (tether_set_queue()).
+/// Stamps are equal, or of cameras whose driver stamps, within half of the shortest period.
 /// @param vehicle  the UAV  @param cameras  names  @param count  how many; at least 1
 /// @param[out] out  `count` images; free each with tether_image_free()
 /// @return TETHER_OK or an @ref interaction error; TETHER_INVALID if there is no common instant

@@ -285,23 +285,53 @@ class Vehicle {
     return subscribe_by<ImageView, tether_image>(tether_subscribe_camera, sensor,
                                                  std::move(on_image));
   }
-  /// Delivers the measurements of an IMU, in a thread of the library. Needs tether-exec.
+  /// Delivers the measurements of an IMU.
+  ///
+  /// Calls from a thread of the library. Needs tether-exec.
   /// @param sensor  its name
-  /// @param on_sample  is called as `on_sample(const ImuSample&)`; must not throw
+  /// @param on_sample  is called as `on_sample(sample)`, with what a read gives; must not throw
   /// @return as tether_subscribe_imu()
   template <class OnSample>
   Result<Subscription> subscribe_imu(const char* sensor, OnSample on_sample) noexcept {
     return subscribe_by<const ImuSample&, ImuSample>(tether_subscribe_imu, sensor,
                                                      std::move(on_sample));
   }
-  /// Delivers the measurements of a rangefinder, in a thread of the library. Needs tether-exec.
-  /// @param sensor  its name
-  /// @param on_sample  is called as `on_sample(const RangeSample&)`; must not throw
-  /// @return as tether_subscribe_range()
+  /// Delivers the measurements of a rangefinder. @copydetails subscribe_imu
   template <class OnSample>
   Result<Subscription> subscribe_range(const char* sensor, OnSample on_sample) noexcept {
     return subscribe_by<const RangeSample&, RangeSample>(tether_subscribe_range, sensor,
                                                          std::move(on_sample));
+  }
+  /// Delivers the measurements of a receiver of satellite navigation. @copydetails subscribe_imu
+  template <class OnSample>
+  Result<Subscription> subscribe_navsat(const char* sensor, OnSample on_sample) noexcept {
+    return subscribe_by<const NavSatSample&, NavSatSample>(tether_subscribe_navsat, sensor,
+                                                           std::move(on_sample));
+  }
+  /// Delivers the measurements of a magnetometer. @copydetails subscribe_imu
+  template <class OnSample>
+  Result<Subscription> subscribe_magnetometer(const char* sensor, OnSample on_sample) noexcept {
+    return subscribe_by<const MagnetometerSample&, MagnetometerSample>(
+        tether_subscribe_magnetometer, sensor, std::move(on_sample));
+  }
+  /// Delivers the measurements of a barometer. @copydetails subscribe_imu
+  template <class OnSample>
+  Result<Subscription> subscribe_barometer(const char* sensor, OnSample on_sample) noexcept {
+    return subscribe_by<const BarometerSample&, BarometerSample>(tether_subscribe_barometer, sensor,
+                                                                 std::move(on_sample));
+  }
+  /// Delivers the measurements of a source of odometry. @copydetails subscribe_imu
+  template <class OnSample>
+  Result<Subscription> subscribe_odometry(const char* sensor, OnSample on_sample) noexcept {
+    return subscribe_by<const OdometrySample&, OdometrySample>(tether_subscribe_odometry, sensor,
+                                                               std::move(on_sample));
+  }
+  /// Delivers the scans of a lidar, in a thread of the library. Needs tether-exec.
+  /// @param sensor  its name  @param on_scan  is called as `on_scan(const Scan&)`; must not throw
+  /// @return as tether_subscribe_scan()
+  template <class OnScan>
+  Result<Subscription> subscribe_scan(const char* sensor, OnScan on_scan) noexcept {
+    return subscribe_by<const Scan&, Scan>(tether_subscribe_scan, sensor, std::move(on_scan));
   }
 
   /// Flies with this velocity until the next command.

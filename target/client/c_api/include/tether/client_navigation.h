@@ -101,6 +101,14 @@ typedef struct tether_scan_info {
   uint64_t rays;          ///< how many distances there are
 } tether_scan_info;
 
+/// A scan that a subscription shows. May grow.
+typedef struct tether_scan {
+  int64_t sampled_at_ns;  ///< ST of the last column [ns]
+  uint64_t index;         ///< number of the measurement of this sensor
+  uint64_t rays;          ///< how many distances there are
+  const float* ranges_m;  ///< as tether_read_scan() has them
+} tether_scan;
+
 /// Reads a lidar into the caller's memory.
 /// @param vehicle  the UAV  @param sensor  its name  @param mode  which scan
 /// @param[out] ranges_m  distances, row by row as in tether_scan_model; +inf: nothing in reach;

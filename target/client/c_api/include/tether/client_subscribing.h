@@ -27,6 +27,16 @@ typedef void (*tether_on_image)(const tether_image* image, void* user);
 typedef void (*tether_on_imu)(const tether_imu_sample* sample, void* user);
 /// Receives a sample. @param sample  valid until the return  @param user  as subscribed
 typedef void (*tether_on_range)(const tether_range_sample* sample, void* user);
+/// Receives a sample. @param sample  valid until the return  @param user  as subscribed
+typedef void (*tether_on_navsat)(const tether_navsat_sample* sample, void* user);
+/// Receives a sample. @param sample  valid until the return  @param user  as subscribed
+typedef void (*tether_on_magnetometer)(const tether_magnetometer_sample* sample, void* user);
+/// Receives a sample. @param sample  valid until the return  @param user  as subscribed
+typedef void (*tether_on_barometer)(const tether_barometer_sample* sample, void* user);
+/// Receives a sample. @param sample  valid until the return  @param user  as subscribed
+typedef void (*tether_on_odometry)(const tether_odometry_sample* sample, void* user);
+/// Receives a scan. @param scan  valid until the return  @param user  as subscribed
+typedef void (*tether_on_scan)(const tether_scan* scan, void* user);
 
 /// Subscribes to a camera.
 /// @param vehicle  the UAV  @param sensor  name of a periodic camera
@@ -49,6 +59,30 @@ tether_status tether_subscribe_imu(tether_vehicle* vehicle, const char* sensor,
 tether_status tether_subscribe_range(tether_vehicle* vehicle, const char* sensor,
                                      tether_on_range on_sample, void* user,
                                      tether_subscription** out) TETHER_NOEXCEPT;
+/// Subscribes to a receiver of satellite navigation. @copydetails tether_subscribe_imu
+tether_status tether_subscribe_navsat(tether_vehicle* vehicle, const char* sensor,
+                                      tether_on_navsat on_sample, void* user,
+                                      tether_subscription** out) TETHER_NOEXCEPT;
+/// Subscribes to a magnetometer. @copydetails tether_subscribe_imu
+tether_status tether_subscribe_magnetometer(tether_vehicle* vehicle, const char* sensor,
+                                            tether_on_magnetometer on_sample, void* user,
+                                            tether_subscription** out) TETHER_NOEXCEPT;
+/// Subscribes to a barometer. @copydetails tether_subscribe_imu
+tether_status tether_subscribe_barometer(tether_vehicle* vehicle, const char* sensor,
+                                         tether_on_barometer on_sample, void* user,
+                                         tether_subscription** out) TETHER_NOEXCEPT;
+/// Subscribes to estimates of pose and velocity. @copydetails tether_subscribe_imu
+tether_status tether_subscribe_odometry(tether_vehicle* vehicle, const char* sensor,
+                                        tether_on_odometry on_sample, void* user,
+                                        tether_subscription** out) TETHER_NOEXCEPT;
+/// Subscribes to a lidar.
+/// @param vehicle  the UAV  @param sensor  name of a periodic lidar
+/// @param on_scan  is called with each scan  @param user  is passed to it; may be NULL
+/// @param[out] out  the subscription; end it with tether_unsubscribe()
+/// @return as tether_subscribe_camera()
+tether_status tether_subscribe_scan(tether_vehicle* vehicle, const char* sensor,
+                                    tether_on_scan on_scan, void* user,
+                                    tether_subscription** out) TETHER_NOEXCEPT;
 /// Whether measurements still arrive. Never blocks.
 /// @param subscription  the subscription
 /// @return TETHER_OK if they do; else why none will arrive, for instance TETHER_RUN_ENDED

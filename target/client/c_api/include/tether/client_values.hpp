@@ -146,6 +146,7 @@ using Pose = tether_pose;                 ///< pose of a frame in its parent
 using CameraModel = tether_camera_model;  ///< pinhole camera with distortion
 using ScanModel = tether_scan_model;      ///< rays of a lidar
 using ScanInfo = tether_scan_info;        ///< description of a scan
+using Scan = tether_scan;                 ///< a scan that a subscription shows
 
 /// Kind of a sensor. A later library may have more.
 enum class SensorKind : std::int32_t {

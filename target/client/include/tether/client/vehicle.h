@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -56,6 +57,8 @@ class Vehicle {
   /// kInvalid if there is no such sensor, it measures on demand, the depth is not within
   /// 1..4096, or the vehicle keeps no queues.
   virtual Status set_queue(std::string_view sensor, std::uint32_t depth);
+  /// How many measurements of the sensor can wait. 1 if there is no such sensor.
+  virtual std::uint32_t queue_of(std::string_view) const { return 1; }
 
   /// A measurement of a sensor: a sample of that kind. Fails with kInvalid if the UAV has no sensor
   /// of that kind and name.
@@ -120,47 +123,45 @@ class Vehicle {
                         std::string_view details_json) = 0;
 };
 
-/// All measurements that wait in the sensor's queue, in order: at least one, for which it waits.
-/// Ends with one of after the call, if reading takes longer than the sensor's period.
+/// All measurements that wait in the sensor's queue, in order: at least one, for which it waits,
+/// and at most as many as the queue has room for. Does not depend on their stamps.
 template <class Sample>
 Result<std::vector<Sample>> read_all(Vehicle& vehicle, std::string_view sensor) {
-  const SimTime begun_at = same_instant(vehicle.now());
   std::vector<Sample> samples;
   auto sample = vehicle.read<Sample>(sensor);
   while (sample) {
     samples.push_back(std::move(*sample));
-    if (samples.back().sampled_at > begun_at) return samples;
+    if (samples.size() >= vehicle.queue_of(sensor)) return samples;
     sample = vehicle.read<Sample>(sensor, Read::kIfAvailable);
   }
   if (sample.failure().kind != Failure::Kind::kNothingYet) return sample.failure();
   return samples;
 }
 
+/// How far the stamps of measurements of one instant can be apart: 0, or half of the shortest
+/// period if the driver of one of the sensors stamps by a clock of its own.
+Duration most_apart(const uav::Catalogue& catalogue, const std::vector<std::string_view>& sensors);
+
 /// One measurement of each sensor, all of one instant: for a stereo pair, or colour and depth.
-/// Reads those that are behind until all are of the same instant. Needs a queue of a few
-/// measurements
-/// (`set_queue`), so that what one sensor delivers earlier is not lost. Fails with kInvalid if
-/// after 1,000 reads there was no common instant.
+/// Reads those that are behind until all stamps are within `most_apart`: equal, or as a driver's
+/// synchroniser pairs them. Needs a queue of a few measurements (`set_queue`), so that what one
+/// sensor delivers earlier is not lost. Fails with kInvalid if after 1,000 reads there was no
+/// common instant.
 template <class Sample>
 Result<std::vector<Sample>> read_together(Vehicle& vehicle,
                                           const std::vector<std::string_view>& sensors) {
   constexpr int kMostReads = 1000;
+  const Duration apart = most_apart(vehicle.catalogue(), sensors);
   std::vector<Sample> samples(sensors.size());
-  std::vector<bool> is_read(sensors.size());
+  std::vector<SimTime> stamps(sensors.size(), SimTime::min());  // which is: not read
   for (int reads = 0; reads < kMostReads; ++reads) {
-    std::size_t behind = 0;
-    bool is_one_instant = true;
-    for (std::size_t i = 0; i < sensors.size(); ++i) {
-      is_one_instant &= is_read[i] && samples[i].sampled_at == samples[0].sampled_at;
-      const bool is_earlier =
-          is_read[behind] && (!is_read[i] || samples[i].sampled_at < samples[behind].sampled_at);
-      if (is_earlier) behind = i;
-    }
-    if (is_one_instant) return samples;
+    const auto [earliest, latest] = std::ranges::minmax_element(stamps);
+    if (*earliest != SimTime::min() && *latest - *earliest <= apart) return samples;
+    const auto behind = static_cast<std::size_t>(earliest - stamps.begin());
     auto sample = vehicle.read<Sample>(sensors[behind]);
     if (!sample) return sample.failure();
     samples[behind] = std::move(*sample);
-    is_read[behind] = true;
+    stamps[behind] = samples[behind].sampled_at;
   }
   return Failure{Failure::Kind::kInvalid,
                  "the sensors have no measurements of one instant: give them one rate and phase"};
