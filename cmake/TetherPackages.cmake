@@ -10,7 +10,8 @@
 #   doc          tether-doc             the site of scripts/docs, if it was built before CMake configures
 
 set(components tether-sut)
-install(DIRECTORY data/missions data/rigs DESTINATION "${CMAKE_INSTALL_DATADIR}/tether" COMPONENT tether-sut)
+install(DIRECTORY data/missions data/programs data/rigs DESTINATION "${CMAKE_INSTALL_DATADIR}/tether" COMPONENT tether-sut
+  USE_SOURCE_PERMISSIONS)
 if(NOT TETHER_TARGET_ONLY)
   list(APPEND components tether tether-counter)
   install(DIRECTORY data/campaigns data/energy data/engines data/models data/profiles data/scenarios data/worlds

@@ -8,6 +8,13 @@ namespace tether::scenario {
 void require_clock(const Scenario& scenario, const Condition& condition) {
   for (std::size_t i = 0; i < scenario.uavs.size(); ++i) {
     const UavSetup& uav = scenario.uavs[i];
+    const auto& target = computer_of(condition, i).target;
+    if (uav.sut.is_as_is && target && target->emulator)
+      throw Error(ErrorCode::kBadFile, scenario.where("as_is"),
+                  fmt::format("the SUT of UAV \"{}\" flies as it is, which does not work in the "
+                              "emulator of condition \"{}\". Use clock = \"cpu\".",
+                              uav.placement.name, condition.name))
+          .about(uav.placement.name);
     const computer::ClockKind clock = computer_of(condition, i).clock.kind;
     if (!uav.sut.concurrent || clock == computer::ClockKind::kWall) continue;
     throw Error(
