@@ -136,6 +136,8 @@ if(NOT TETHER_TARGET_ONLY)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/CHANGELOG.md")
   install(FILES docs/design.md docs/results.md docs/scale.md "${documents}/CHANGELOG.md"
     DESTINATION "${destination}" COMPONENT tether)
+  install(DIRECTORY examples/node-companion DESTINATION "${destination}/examples" COMPONENT tether
+    USE_SOURCE_PERMISSIONS PATTERN node_modules EXCLUDE)
   install(DIRECTORY examples/own-simulator DESTINATION "${destination}/examples" COMPONENT tether
     PATTERN build EXCLUDE)
 endif()

@@ -1,10 +1,12 @@
 #!/bin/sh
-# check_mavlink.sh EXCHANGE FOLDER: messages of every type, from Tether (the program EXCHANGE) to node-mavlink and back,
-# plain and signed. Files are in FOLDER.
+# check_mavlink.sh EXCHANGE TETHER EXAMPLE FOLDER: messages of every type, from Tether (the program EXCHANGE) to
+# node-mavlink and back, plain and signed. Then the example of a companion in Node flies. Files are in FOLDER.
 # Exit 77 (ctest: skipped) where there is no node or npm, or the package cannot be fetched.
 set -eu
 exchange=$1
-folder=$2
+tether=$2
+example=$3
+folder=$4
 here=$(cd "$(dirname "$0")" && pwd)
 
 command -v node >/dev/null && command -v npm >/dev/null || { echo "skipped: install nodejs and npm"; exit 77; }
@@ -40,4 +42,7 @@ done
 # It can fail: with another key, neither side takes a frame of the other.
 if node peer.mjs read ours.bin "another secret" >other.txt; then echo "node-mavlink took a wrong signature"; exit 1; fi
 if "$exchange" read theirs.bin "another secret" >other.txt || [ -s other.txt ]; then echo "Tether took a wrong signature"; exit 1; fi
+cp "$example"/mission.* .
+"$tether" run mission.toml --quiet --force --out flight || { cat flight/sut-uav1.log; echo "the example does not fly"; exit 1; }
+
 echo "$(wc -l <ours_seen.txt) messages of $(cut -d ' ' -f 2 ours_seen.txt | sort -u | wc -l) types each way, plain and signed"
