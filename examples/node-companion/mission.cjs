@@ -2,7 +2,7 @@
 // A companion computer's program in Node: uploads a mission by MAVLink (npm: node-mavlink), starts it,
 // and waits until the vehicle has landed. Nothing of Tether is in it.
 //
-// usage: node mission.js [SIDE_M [HEIGHT_M]]
+// usage: node mission.cjs [SIDE_M [HEIGHT_M]]
 'use strict';
 const dgram = require('dgram');
 const { PassThrough } = require('stream');
