@@ -132,9 +132,10 @@ class AutopilotCheck {
                          m.outcome, m.acted_at ? "taken" : "not taken");
     if (!is_taken) return;
     const Wide due = Boundaries(controller_.period).at_or_after(wide(m.at));
-    // In free running, a message comes when it comes.
-    const bool is_synchronised = record_.header.policy == record::kConservativeBarrier;
-    if (wide(*m.acted_at) < due || (is_synchronised && wide(*m.acted_at) > due))
+    // In free running, what is sent at the boundary of a step is sent after it.
+    const bool is_after = record_.header.policy == record::kFreeRunning && due == wide(m.at) &&
+                          wide(*m.acted_at) == due + wide(controller_.period);
+    if (wide(*m.acted_at) != due && !is_after)
       report_.add(2, entry, "the flight controller took at {} what arrived at {}; its step was {}",
                   ns(*m.acted_at), ns(m.at), ns(due));
   }

@@ -53,7 +53,11 @@ class ParameterPort {
     const auto index = find_parameter(m.text("param_id"));
     if (!index) return;
     const double value = m.number("param_value");
-    parameters.set(*index, parameter_infos()[*index].is_integer ? bytes_of_float(value) : value);
+    const bool is_integer = parameter_infos()[*index].is_integer;
+    if (m.integer("param_type") == (is_integer ? kInt32 : kReal32))
+      parameters.set(*index, is_integer ? bytes_of_float(value) : value);
+    else
+      outbox.say(4, "parameter not set: its type is another one");
     send(*index, parameters, outbox);
   }
 
@@ -64,8 +68,9 @@ class ParameterPort {
   }
 
  private:
+  static constexpr int kInt32 = 6, kReal32 = 9;  // MAV_PARAM_TYPE
+
   static void send(std::size_t index, const Parameters& parameters, Outbox& outbox) {
-    constexpr int kInt32 = 6, kReal32 = 9;
     const ParameterInfo& info = parameter_infos()[index];
     const double value = parameters.value(index);
     mavlink::Message m("PARAM_VALUE");
@@ -121,6 +126,7 @@ class BuiltIn : public FlightController {
   }
 
   // A vehicle that starts on the ground is set down there first; meanwhile, its controller boots.
+  // What it stands on may move.
   static uav::Setpoint setting_down() {
     constexpr double kSpeed_m_s = 0.3;
     uav::Setpoint down;
@@ -131,7 +137,7 @@ class BuiltIn : public FlightController {
     constexpr double kStill_m_s = 0.05;
     constexpr Duration kLeast = std::chrono::milliseconds(500),
                        kStillFor = std::chrono::milliseconds(200);
-    if (norm(truth.v_WB) > kStill_m_s || vehicle_.now < SimTime(kLeast))
+    if (std::abs(truth.v_WB.z) > kStill_m_s || vehicle_.now < SimTime(kLeast))
       still_since_ = vehicle_.now;
     return vehicle_.now - still_since_ >= kStillFor;
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -11,7 +12,7 @@ namespace tether::autopilot {
 namespace {
 
 // MAV_RESULT.
-constexpr int kAccepted = 0, kRejected = 1, kDenied = 2, kUnsupported = 3;
+constexpr int kAccepted = 0, kRejected = 1, kDenied = 2, kUnsupported = 3, kFailed = 4;
 
 // MAV_CMD.
 constexpr int kNavLoiter = 17, kNavReturn = 20, kNavLand = 21, kNavTakeoff = 22, kDoSetMode = 176,
@@ -21,6 +22,23 @@ constexpr int kNavLoiter = 17, kNavReturn = 20, kNavLand = 21, kNavTakeoff = 22,
 
 constexpr double kForce = 21196.0;  // parameter 2 of kArmDisarm: without checks
 
+// A whole number; −1: it is none, or negative.
+std::int64_t whole(double value) {
+  return value >= 0.0 && value < 1e9 ? std::llround(value) : -1;
+}
+bool is_place(double latitude_deg, double longitude_deg) {
+  return std::abs(latitude_deg) <= 90.0 && std::abs(longitude_deg) <= 180.0;
+}
+// Of COMMAND_INT [1e-7 degrees]; the largest integer stands for none.
+double degrees_of(std::int64_t value) {
+  return value == std::numeric_limits<std::int32_t>::max()
+             ? std::numeric_limits<double>::quiet_NaN()
+             : static_cast<double>(value) * 1e-7;
+}
+const mavlink::MessageType* type_of(double id) {
+  return whole(id) < 0 ? nullptr : mavlink::find_type(static_cast<std::uint32_t>(whole(id)));
+}
+
 struct BatteryLevel {
   Parameter threshold;
   int severity;
@@ -29,7 +47,7 @@ struct BatteryLevel {
 constexpr BatteryLevel kBatteryLevels[] = {
     {Parameter::kBatLow, 4, "battery is low"},
     {Parameter::kBatCritical, 2, "battery is critical"},
-    {Parameter::kBatEmergency, 2, "battery is almost empty: landing"},
+    {Parameter::kBatEmergency, 2, "battery is almost empty"},
 };
 
 }  // namespace
@@ -42,14 +60,14 @@ void Commander::on_message(const mavlink::Frame& frame) {
   const mavlink::Message& m = frame.message;
   if (m.is("SET_MODE")) {
     const auto custom = static_cast<unsigned>(m.integer("custom_mode"));
-    set_mode(static_cast<unsigned>(m.integer("base_mode")), custom >> 16 & 0xFFU, custom >> 24);
+    set_mode(m.integer("base_mode"), custom >> 16 & 0xFFU, custom >> 24);
     return;
   }
   Command command{.id = static_cast<int>(m.integer("command"))};
   for (std::size_t i = 1; i <= 4; ++i) command.p[i] = m.number("param" + std::to_string(i));
   if (m.is("COMMAND_INT")) {
-    command.p[5] = m.number("x") * 1e-7;
-    command.p[6] = m.number("y") * 1e-7;
+    command.p[5] = degrees_of(m.integer("x"));
+    command.p[6] = degrees_of(m.integer("y"));
     command.p[7] = m.number("z");
     const auto mav_frame = m.integer("frame");
     command.is_place_relative = mav_frame == 3 || mav_frame == 6;
@@ -70,8 +88,7 @@ int Commander::run(const Command& command) {
     case kArmDisarm:
       return set_arming(command);
     case kDoSetMode:
-      return set_mode(static_cast<unsigned>(p[1]), static_cast<unsigned>(p[2]),
-                      static_cast<unsigned>(p[3]));
+      return set_mode(whole(p[1]), whole(p[2]), whole(p[3]));
     case kNavTakeoff:
       return take_off(command);
     case kNavLand:
@@ -84,7 +101,7 @@ int Commander::run(const Command& command) {
       enter(Mode::kHold);
       return kAccepted;
     case kMissionStart:
-      return set_mode(1, info(Mode::kMission).main, info(Mode::kMission).sub);
+      return start_mission(command);
     case kDoReposition:
       return reposition(command);
     case kDoChangeSpeed:
@@ -94,18 +111,21 @@ int Commander::run(const Command& command) {
     case kDoSetHome:
       return set_home(command);
     case kGetHome:
-      return telemetry_->request("HOME_POSITION") ? kAccepted : kDenied;
+      telemetry_->request("HOME_POSITION");
+      return kAccepted;
     case kSetInterval:
       return set_interval(command);
-    case kGetInterval:
-      return telemetry_->tell_interval(static_cast<std::uint32_t>(p[1]), *outbox_) ? kAccepted
-                                                                                   : kUnsupported;
+    case kGetInterval: {
+      const auto* type = type_of(p[1]);
+      return type != nullptr && telemetry_->tell_interval(*type, *outbox_) ? kAccepted : kFailed;
+    }
     case kRequestMessage: {
-      const auto* type = mavlink::find_type(static_cast<std::uint32_t>(p[1]));
-      return type != nullptr && telemetry_->request(type->name) ? kAccepted : kUnsupported;
+      const auto* type = type_of(p[1]);
+      return type != nullptr && telemetry_->request(type->name) ? kAccepted : kDenied;
     }
     case kRequestCapabilities:
-      return telemetry_->request("AUTOPILOT_VERSION") ? kAccepted : kDenied;
+      telemetry_->request("AUTOPILOT_VERSION");
+      return kAccepted;
     default:
       return kUnsupported;
   }
@@ -114,21 +134,15 @@ int Commander::run(const Command& command) {
 std::string Commander::why_not_arm() const {
   if (!vehicle_->is_landed) return "it is in the air";
   if (battery_state_ > 0) return "the battery is low";
+  if (vehicle_->mode == Mode::kLand || vehicle_->mode == Mode::kReturn)
+    return fmt::format("not in {}", info(vehicle_->mode).name);
   return why_not(vehicle_->mode);
 }
 
 int Commander::set_arming(const Command& command) {
   const bool is_forced = command.p[2] == kForce;
-  if (command.p[1] == 1.0) {
-    if (vehicle_->is_armed) return kAccepted;
-    if (const std::string why = why_not_arm(); !is_forced && !why.empty()) {
-      outbox_->say(2, "Arming denied: " + why);
-      return kRejected;
-    }
-    arm();
-    return kAccepted;
-  }
-  if (command.p[1] != 0.0) return kDenied;
+  if (command.p[1] == 1.0) return arm(is_forced) ? kAccepted : kRejected;
+  if (command.p[1] != 0.0) return kUnsupported;
   if (!vehicle_->is_armed) return kAccepted;
   if (!vehicle_->is_landed && !is_forced) {
     outbox_->say(2, "Disarming denied: it is not landed");
@@ -139,7 +153,12 @@ int Commander::set_arming(const Command& command) {
 }
 
 // Home is where it was armed.
-void Commander::arm() {
+bool Commander::arm(bool is_forced) {
+  if (vehicle_->is_armed) return true;
+  if (const std::string why = why_not_arm(); !is_forced && !why.empty()) {
+    outbox_->say(2, "Arming denied: " + why);
+    return false;
+  }
   vehicle_->is_armed = true;
   vehicle_->armed_at = vehicle_->now;
   vehicle_->landed_at.reset();
@@ -147,13 +166,16 @@ void Commander::arm() {
   vehicle_->home_yaw_W_rad = uav::yaw_rad(vehicle_->estimate.q_WB);
   outbox_->say(6, "armed");
   telemetry_->request("HOME_POSITION");
+  telemetry_->request("HEARTBEAT");
   navigator_->begin(*vehicle_, *missions_);
+  return true;
 }
 
 void Commander::disarm(std::string_view why) {
   vehicle_->is_armed = false;
   vehicle_->is_failsafe = false;
   outbox_->say(6, fmt::format("disarmed {}", why));
+  telemetry_->request("HEARTBEAT");
   if (vehicle_->mode == Mode::kLand || vehicle_->mode == Mode::kReturn ||
       vehicle_->mode == Mode::kTakeoff)
     enter(Mode::kHold);
@@ -167,20 +189,38 @@ std::string Commander::why_not(Mode mode) const {
   return {};
 }
 
-int Commander::set_mode(unsigned base_mode, unsigned main, unsigned sub) {
-  constexpr unsigned kCustom = 1;
-  if ((base_mode & kCustom) == 0) return kDenied;
-  const auto mode = mode_of(main, main == info(Mode::kOffboard).main ? 0 : sub);
+int Commander::set_mode(std::int64_t base_mode, std::int64_t main, std::int64_t sub) {
+  constexpr std::int64_t kCustom = 1;
+  const auto mode = base_mode < 0 || (base_mode & kCustom) == 0 ? std::nullopt : mode_of(main, sub);
   if (!mode) {
     outbox_->say(2, fmt::format("mode {}.{} is not available", main, sub));
-    return kDenied;
-  }
-  if (const std::string why = why_not(*mode); !why.empty()) {
-    outbox_->say(2, fmt::format("{} denied: {}", info(*mode).name, why));
     return kRejected;
   }
-  enter(*mode);
+  return change_to(*mode);
+}
+
+// What a mode needs is looked at in the air, and before arming.
+int Commander::change_to(Mode mode) {
+  if (const std::string why = why_not(mode); vehicle_->is_armed && !why.empty()) {
+    outbox_->say(2, fmt::format("{} denied: {}", info(mode).name, why));
+    return kRejected;
+  }
+  enter(mode);
   return kAccepted;
+}
+
+// It arms, too.
+int Commander::start_mission(const Command& command) {
+  const double first = command.p[1];
+  if (missions_->items().empty()) {
+    outbox_->say(2, "Mission start denied: there is no mission");
+    return kDenied;
+  }
+  const auto count = static_cast<double>(missions_->items().size());
+  if (!(first >= -1.0 && first < count)) return kDenied;
+  if (first > 0.0) missions_->go_to(static_cast<std::size_t>(first));
+  enter(Mode::kMission);
+  return arm() ? kAccepted : kRejected;
 }
 
 void Commander::enter(Mode mode) {
@@ -201,22 +241,23 @@ double Commander::altitude_w(const Command& command) const {
   return vehicle_->frame.point(here).z;
 }
 
-// As in PX4, an altitude that is not above the vehicle is replaced by that of the parameter.
+// An altitude that is not above the vehicle is replaced by that of the parameter.
 int Commander::take_off(const Command& command) {
-  if (!vehicle_->is_landed) return kRejected;
   const double z_W = altitude_w(command);
-  if (std::isfinite(z_W) && z_W > vehicle_->estimate.p_WB.z) navigator_->take_off_to(z_W);
+  const bool is_above = std::isfinite(z_W) && z_W > vehicle_->estimate.p_WB.z;
+  navigator_->take_off_to(is_above ? std::optional(z_W) : std::nullopt);
   enter(Mode::kTakeoff);
   return kAccepted;
 }
 
+// Parameter 2 must ask for the change of mode.
 int Commander::reposition(const Command& command) {
+  if (whole(command.p[2]) != 1) return kUnsupported;
   if (!vehicle_->is_armed || vehicle_->is_landed) return kRejected;
   enter(Mode::kHold);
   uav::Vec3 p_W = vehicle_->estimate.p_WB;
   const double z_W = altitude_w(command);
-  if (std::isfinite(command.p[5]) && std::isfinite(command.p[6]) &&
-      (command.p[5] != 0.0 || command.p[6] != 0.0)) {
+  if (is_place(command.p[5], command.p[6]) && (command.p[5] != 0.0 || command.p[6] != 0.0)) {
     sim::Geodetic place = vehicle_->frame.geodetic(p_W);
     place.latitude_deg = command.p[5];
     place.longitude_deg = command.p[6];
@@ -229,16 +270,16 @@ int Commander::reposition(const Command& command) {
 }
 
 int Commander::set_interval(const Command& command) {
-  const auto* type = mavlink::find_type(static_cast<std::uint32_t>(command.p[1]));
-  if (type == nullptr) return kUnsupported;
-  return telemetry_->set_interval(type->name, command.p[2]) ? kAccepted : kUnsupported;
+  const auto* type = type_of(command.p[1]);
+  return type != nullptr && telemetry_->set_interval(type->name, command.p[2]) ? kAccepted
+                                                                               : kFailed;
 }
 
 int Commander::set_home(const Command& command) {
-  if (command.p[1] == 1.0) {
+  if (command.p[1] > 0.5) {
     vehicle_->home_W = vehicle_->estimate.p_WB;
   } else {
-    if (!std::isfinite(command.p[5] + command.p[6] + command.p[7])) return kDenied;
+    if (!is_place(command.p[5], command.p[6]) || !std::isfinite(command.p[7])) return kDenied;
     vehicle_->home_W = vehicle_->frame.point({command.p[5], command.p[6], command.p[7]});
   }
   telemetry_->request("HOME_POSITION");
@@ -274,9 +315,10 @@ void Commander::watch_battery() {
   outbox_->say(level.severity, level.text);
   const int action = static_cast<int>(vehicle_->parameter(Parameter::kLowBatteryAction));
   if (!vehicle_->is_armed || vehicle_->is_landed || action == 0) return;
-  if (state == 2) enter(action == 1 ? Mode::kReturn : Mode::kLand);
-  if (state == 3) enter(Mode::kLand);
-  if (state >= 2) vehicle_->is_failsafe = true;
+  if (state < 2) return;
+  const Mode mode = state == 2 && action != 2 ? Mode::kReturn : Mode::kLand;
+  if (vehicle_->mode != Mode::kLand) enter(mode);
+  vehicle_->is_failsafe = true;
 }
 
 void Commander::watch_ground() {

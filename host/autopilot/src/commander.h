@@ -7,8 +7,9 @@
 #include "telemetry.h"
 #include "vehicle.h"
 
-#include <optional>
+#include <cstdint>
 #include <string>
+#include <string_view>
 
 #include <tether/mavlink/frame.h>
 
@@ -31,8 +32,6 @@ class Commander {
   void on_message(const mavlink::Frame& frame);
   /// Whatever time brings: lost set-points, an empty battery, disarming.
   void step();
-  void arm();
-  void enter(Mode mode);
 
  private:
   /// A command, from either message. `p`: its parameters 1 to 7, of which 5 and 6 are in degrees
@@ -43,14 +42,19 @@ class Commander {
     bool is_place_relative = false;  // its altitude is over home
   };
   int run(const Command& command);
+  void enter(Mode mode);
   int set_arming(const Command& command);
-  int set_mode(unsigned base_mode, unsigned main, unsigned sub);
+  int set_mode(std::int64_t base_mode, std::int64_t main, std::int64_t sub);
+  int change_to(Mode mode);
+  int start_mission(const Command& command);
   int take_off(const Command& command);
   int reposition(const Command& command);
   int set_interval(const Command& command);
   int set_home(const Command& command);
   std::string why_not_arm() const;
   std::string why_not(Mode mode) const;
+  /// False: it is denied, and the reason told.
+  bool arm(bool is_forced = false);
   void disarm(std::string_view why);
   void watch_set_points();
   void watch_battery();

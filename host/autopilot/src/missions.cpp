@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace tether::autopilot {
 namespace {
@@ -21,6 +22,8 @@ constexpr int kItems[] = {kWaypoint, kLoiterUnlimited, kLoiterTime, kReturnToLau
 // Those with latitude, longitude and altitude; a landing without any is at the place.
 constexpr int kPlaces[] = {kWaypoint, kLoiterUnlimited, kLoiterTime, kLandItem, kTakeoffItem};
 constexpr int kFrames[] = {0, 3, 5, 6};  // global, and relative to home's altitude
+
+constexpr int kMissionType = 0, kAllTypes = 255;  // MAV_MISSION_TYPE
 
 MissionItem item_of(const mavlink::Message& message) {
   MissionItem item;
@@ -48,6 +51,14 @@ int fault_of(const MissionItem& item) {
   return is_place ? mission_result::kAccepted : mission_result::kInvalid;
 }
 
+void acknowledge(mavlink::Address to, int result, Outbox& outbox, std::int64_t type = 0) {
+  outbox.send(mavlink::Message("MISSION_ACK")
+                  .set("target_system", to.system)
+                  .set("target_component", to.component)
+                  .set("type", result)
+                  .set("mission_type", type));
+}
+
 }  // namespace
 
 bool Missions::takes(const mavlink::Message& message) {
@@ -56,9 +67,9 @@ bool Missions::takes(const mavlink::Message& message) {
 
 void Missions::on_message(const mavlink::Frame& frame, const Vehicle& vehicle, Outbox& outbox) {
   const mavlink::Message& m = frame.message;
-  const auto* type = m.type().field("mission_type");
-  if (type != nullptr && m.integer("mission_type") != 0) {
-    if (!m.is("MISSION_ACK")) acknowledge(frame.from, mission_result::kUnsupported, outbox);
+  const auto type = m.type().field("mission_type") ? m.integer("mission_type") : kMissionType;
+  if (type != kMissionType && !(type == kAllTypes && m.is("MISSION_CLEAR_ALL"))) {
+    if (!m.is("MISSION_ACK")) acknowledge(frame.from, mission_result::kUnsupported, outbox, type);
     return;
   }
   if (m.is("MISSION_COUNT")) return begin_upload(frame, vehicle.now, outbox);
@@ -72,20 +83,14 @@ void Missions::on_message(const mavlink::Frame& frame, const Vehicle& vehicle, O
   if (m.is("MISSION_REQUEST_INT")) return send_item(frame, true, outbox);
   if (m.is("MISSION_REQUEST")) return send_item(frame, false, outbox);
   if (m.is("MISSION_CLEAR_ALL")) {
-    const bool is_flown = vehicle.mode == Mode::kMission && vehicle.is_armed;
-    if (!is_flown) {
-      items_.clear();
-      current_ = 0;
-    }
-    return acknowledge(frame.from,
-                       is_flown ? mission_result::kCancelled : mission_result::kAccepted, outbox);
+    replace({});
+    return acknowledge(frame.from, mission_result::kAccepted, outbox, type);
   }
   if (m.is("MISSION_SET_CURRENT")) {
-    const auto wanted = static_cast<std::size_t>(m.integer("seq"));
-    if (wanted < items_.size()) current_ = wanted;
+    go_to(static_cast<std::size_t>(m.integer("seq")));
     return send_current(outbox);
   }
-  if (m.is("MISSION_ACK") && upload_ && upload_->from.system == frame.from.system) upload_.reset();
+  if (m.is("MISSION_ACK") && upload_ && upload_->from == frame.from) upload_.reset();
 }
 
 void Missions::begin_upload(const mavlink::Frame& frame, SimTime now, Outbox& outbox) {
@@ -93,20 +98,24 @@ void Missions::begin_upload(const mavlink::Frame& frame, SimTime now, Outbox& ou
   if (count > kMostItems) return acknowledge(frame.from, mission_result::kNoSpace, outbox);
   upload_ = {.from = frame.from, .count = count, .items = {}};
   if (count > 0) return ask(now, outbox);
-  upload_.reset();
-  items_.clear();
-  current_ = 0;
+  replace({});
   acknowledge(frame.from, mission_result::kAccepted, outbox);
 }
 
-// An item that was asked for twice may come twice.
+void Missions::replace(std::vector<MissionItem> items) {
+  items_ = std::move(items);
+  ++plan_;
+  current_ = 0;
+  upload_.reset();
+}
+
+// An item that is not the one that was asked for is dropped, and the other one asked for again.
 void Missions::take_item(const mavlink::Frame& frame, SimTime now, Outbox& outbox) {
-  if (!upload_) return;
+  if (!upload_ || upload_->from != frame.from) return;
   const auto sequence = static_cast<std::size_t>(frame.message.integer("seq"));
-  if (sequence < upload_->items.size()) return;
+  if (sequence != upload_->items.size()) return;
   const MissionItem item = item_of(frame.message);
-  const int fault =
-      sequence == upload_->items.size() ? fault_of(item) : mission_result::kInvalidSequence;
+  const int fault = fault_of(item);
   if (fault != mission_result::kAccepted) {
     upload_.reset();
     return acknowledge(frame.from, fault, outbox);
@@ -114,9 +123,7 @@ void Missions::take_item(const mavlink::Frame& frame, SimTime now, Outbox& outbo
   upload_->items.push_back(item);
   upload_->tries = 0;
   if (upload_->items.size() < upload_->count) return ask(now, outbox);
-  items_ = std::move(upload_->items);
-  current_ = 0;
-  upload_.reset();
+  replace(std::move(upload_->items));
   acknowledge(frame.from, mission_result::kAccepted, outbox);
 }
 
@@ -134,13 +141,6 @@ void Missions::step(SimTime now, Outbox& outbox) {
   if (upload_->tries < kMostTries) return ask(now, outbox);
   acknowledge(upload_->from, mission_result::kCancelled, outbox);
   upload_.reset();
-}
-
-void Missions::acknowledge(mavlink::Address to, int result, Outbox& outbox) const {
-  outbox.send(mavlink::Message("MISSION_ACK")
-                  .set("target_system", to.system)
-                  .set("target_component", to.component)
-                  .set("type", result));
 }
 
 void Missions::send_item(const mavlink::Frame& request, bool as_integers, Outbox& outbox) const {
@@ -163,8 +163,17 @@ void Missions::send_item(const mavlink::Frame& request, bool as_integers, Outbox
   outbox.send(m);
 }
 
-bool Missions::reached(Outbox& outbox) {
+void Missions::say_reached(Outbox& outbox) const {
   outbox.send(mavlink::Message("MISSION_ITEM_REACHED").set("seq", current_));
+}
+
+bool Missions::go_to(std::size_t item) {
+  if (item >= items_.size()) return false;
+  current_ = item;
+  return true;
+}
+
+bool Missions::go_on(Outbox& outbox) {
   ++current_;
   if (is_at_end()) return false;
   send_current(outbox);
@@ -172,7 +181,7 @@ bool Missions::reached(Outbox& outbox) {
 }
 
 void Missions::send_current(Outbox& outbox) const {
-  outbox.send(mavlink::Message("MISSION_CURRENT").set("seq", std::min(current_, items_.size())));
+  outbox.send(mavlink::Message("MISSION_CURRENT").set("seq", shown()).set("total", items_.size()));
 }
 
 }  // namespace tether::autopilot

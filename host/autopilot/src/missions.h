@@ -25,6 +25,13 @@ struct MissionItem {
 inline constexpr int kWaypoint = 16, kLoiterUnlimited = 17, kLoiterTime = 19, kReturnToLaunch = 20,
                      kLandItem = 21, kTakeoffItem = 22, kDelay = 93, kChangeSpeed = 178;
 
+/// An item of a plan: each upload is another plan.
+struct MissionPlace {
+  std::uint64_t plan = 0;
+  std::size_t item = 0;
+  friend bool operator==(const MissionPlace&, const MissionPlace&) = default;
+};
+
 /// The plan of a mission: upload, download and progress (MAVLink's mission protocol,
 /// mavlink.io/en/services/mission.html). Flying it is the Navigator's.
 class Missions {
@@ -35,11 +42,17 @@ class Missions {
   void step(SimTime now, Outbox& outbox);
 
   const std::vector<MissionItem>& items() const { return items_; }
-  std::size_t current() const { return current_; }
-  /// The current item was reached: tells it, and goes on. False: it was the last one.
-  bool reached(Outbox& outbox);
+  MissionPlace current() const { return {plan_, current_}; }
+  /// Tells that the current item was reached.
+  void say_reached(Outbox& outbox) const;
+  /// Goes on to the next item. False: it was the last one.
+  bool go_on(Outbox& outbox);
   void restart() { current_ = 0; }
+  /// False: there is no such item.
+  bool go_to(std::size_t item);
   bool is_at_end() const { return current_ >= items_.size(); }
+  /// The number of the current item, or of the last one.
+  std::size_t shown() const { return is_at_end() && current_ > 0 ? items_.size() - 1 : current_; }
   void send_current(Outbox& outbox) const;
 
  private:
@@ -53,10 +66,11 @@ class Missions {
   void begin_upload(const mavlink::Frame& frame, SimTime now, Outbox& outbox);
   void take_item(const mavlink::Frame& frame, SimTime now, Outbox& outbox);
   void ask(SimTime now, Outbox& outbox);
-  void acknowledge(mavlink::Address to, int result, Outbox& outbox) const;
+  void replace(std::vector<MissionItem> items);
   void send_item(const mavlink::Frame& request, bool as_integers, Outbox& outbox) const;
 
   std::vector<MissionItem> items_;
+  std::uint64_t plan_ = 0;
   std::size_t current_ = 0;
   std::optional<Upload> upload_;
 };

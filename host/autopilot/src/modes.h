@@ -31,9 +31,10 @@ constexpr std::uint32_t custom_mode(Mode mode) {
   return std::uint32_t{info(mode).sub} << 24 | std::uint32_t{info(mode).main} << 16;
 }
 /// None: the controller does not have it.
-constexpr std::optional<Mode> mode_of(unsigned main, unsigned sub) {
+constexpr std::optional<Mode> mode_of(std::int64_t main, std::int64_t sub) {
+  constexpr std::int64_t kAuto = 4;  // others have no sub-modes
   for (const ModeInfo& row : kModes)
-    if (row.main == main && row.sub == sub) return row.mode;
+    if (row.main == main && (row.sub == sub || main != kAuto)) return row.mode;
   return std::nullopt;
 }
 

@@ -16,11 +16,13 @@ constexpr double kSlowDescentBelow_m = 5.0;
 // The reference of a descent is not deeper below the vehicle, so that it does not run into the
 // ground.
 constexpr double kMostLead_m = 0.6;
-// What is taken for standing on the ground: it should sink, and does not move for so long.
-constexpr double kSinking_m = 0.2, kSinking_m_s = 0.2, kStill_m_s = 0.15;
+// What is taken for standing on the ground: it should sink, and does not, for so long. What it
+// stands on may move.
+constexpr double kSinking_m = 0.2, kSinking_m_s = 0.2, kStill_m_s = 0.15, kCarried_m_s = 1.5;
+constexpr double kSinking_m_s2 = 0.5;
 constexpr Duration kStillFor = std::chrono::milliseconds(500);
-// It has left the ground.
-constexpr double kRisen_m_s = 0.15;
+// It should leave the ground, or has.
+constexpr double kRise_m = 0.1, kRise_m_s = 0.05, kRisen_m = 0.05, kRisen_m_s = 0.15;
 constexpr double kIdleRotors = 0.15;  // share of their greatest speed
 constexpr double kBrakingShare = 0.5;
 constexpr double kArrived_m = 0.3;
@@ -30,10 +32,15 @@ double horizontal(const Vec3& v) {
   return std::hypot(v.x, v.y);
 }
 
-// A speed that grows with `acceleration`, and can stop within the distance.
-double next_speed(double speed, double most, double distance, double acceleration, double dt_s) {
-  const double stopping = std::sqrt(2.0 * kBrakingShare * acceleration * std::max(0.0, distance));
-  return std::min({speed + acceleration * dt_s, most, stopping});
+bool is_acceleration(const uav::Setpoint& setpoint) {
+  return uav::level_of(setpoint.mask) == uav::SetpointLevel::kAcceleration;
+}
+
+// From which it can stop within the distance.
+double speed_for(double distance, double most, double acceleration) {
+  constexpr double kGain_1_s = 4.0;
+  return std::min(
+      {most, std::sqrt(2.0 * kBrakingShare * acceleration * distance), kGain_1_s * distance});
 }
 
 }  // namespace
@@ -43,30 +50,39 @@ void Navigator::go_to(const Vec3& p_W, double yaw_W_rad) {
   if (std::isfinite(yaw_W_rad)) goal_yaw_rad_ = yaw_W_rad;
 }
 
+void Navigator::set_cruise(double speed_m_s) {
+  const ParameterInfo& limits = info_of(Parameter::kCruise_m_s);
+  cruise_m_s_ = std::clamp(speed_m_s, limits.min, limits.max);
+}
+
 // Where it stops if it brakes now.
 void Navigator::stop_here(const Vehicle& vehicle) {
-  const Vec3& v = vehicle.estimate.v_WB;
   const double braking = kBrakingShare * vehicle.parameter(Parameter::kAcceleration_m_s2);
-  const double distance_s = horizontal(v) / (2.0 * braking);
   reference_W_ = vehicle.estimate.p_WB;
-  velocity_W_m_s_ = vehicle.is_landed ? Vec3{} : v;
-  goal_W_ = reference_W_ + distance_s * Vec3{velocity_W_m_s_.x, velocity_W_m_s_.y, 0.0};
+  velocity_W_m_s_ = vehicle.is_landed ? Vec3{} : vehicle.estimate.v_WB;
+  const Vec3& v = velocity_W_m_s_;
+  const double along_s = horizontal(v) / (2.0 * braking), up_s = std::abs(v.z) / (2.0 * braking);
+  goal_W_ = reference_W_ + Vec3{along_s * v.x, along_s * v.y, up_s * v.z};
   yaw_rad_ = goal_yaw_rad_ = uav::yaw_rad(vehicle.estimate.q_WB);
   is_descending_ = false;
 }
 
 void Navigator::begin(const Vehicle& vehicle, Missions& missions) {
   stop_here(vehicle);
+  if (const auto stay_W = std::exchange(stay_W_, std::nullopt);
+      stay_W && vehicle.mode == Mode::kHold)
+    goal_W_ = *stay_W;
+  next_mode_.reset();
   item_.reset();
   item_until_.reset();
   cruise_m_s_.reset();
   if (vehicle.mode == Mode::kTakeoff) {
-    goal_W_ = reference_W_;
-    goal_W_.z = std::isfinite(takeoff_z_W_) && has_takeoff_z_
-                    ? takeoff_z_W_
-                    : vehicle.home_W.z + vehicle.parameter(Parameter::kTakeoffAltitude_m);
+    goal_W_.z = std::max(
+        goal_W_.z,
+        takeoff_z_W_.value_or(vehicle.home_W.z + vehicle.parameter(Parameter::kTakeoffAltitude_m)));
+  } else {
+    takeoff_z_W_.reset();
   }
-  has_takeoff_z_ = false;
   if (vehicle.mode == Mode::kLand) is_descending_ = true;
   if (vehicle.mode == Mode::kReturn) {
     const bool is_near = horizontal(vehicle.home_W - vehicle.estimate.p_WB) <
@@ -74,6 +90,11 @@ void Navigator::begin(const Vehicle& vehicle, Missions& missions) {
     return_phase_ = is_near ? ReturnPhase::kFly : ReturnPhase::kClimb;
   }
   if (vehicle.mode == Mode::kMission && missions.is_at_end()) missions.restart();
+}
+
+void Navigator::stay_at_goal() {
+  next_mode_ = Mode::kHold;
+  stay_W_ = goal_W_;
 }
 
 std::optional<Mode> Navigator::next_mode() {
@@ -96,17 +117,17 @@ void Navigator::move(const Vehicle& vehicle, const Speeds& speeds, double dt_s) 
   const double acceleration = vehicle.parameter(Parameter::kAcceleration_m_s2);
   const Vec3 way = goal_W_ - reference_W_;
   const double distance = horizontal(way);
-  const double speed =
-      next_speed(horizontal(velocity_W_m_s_), speeds.horizontal_m_s, distance, acceleration, dt_s);
-  const double share = distance > 0.0 ? std::min(1.0, speed * dt_s / distance) : 1.0;
+  const double along =
+      distance > 0.0 ? speed_for(distance, speeds.horizontal_m_s, acceleration) / distance : 0.0;
   const double up = std::copysign(
-      next_speed(std::abs(velocity_W_m_s_.z), way.z > 0.0 ? speeds.up_m_s : speeds.down_m_s,
-                 std::abs(way.z), acceleration, dt_s),
+      speed_for(std::abs(way.z), way.z > 0.0 ? speeds.up_m_s : speeds.down_m_s, acceleration),
       way.z);
-  const Vec3 step{share * way.x, share * way.y,
-                  std::abs(up * dt_s) < std::abs(way.z) ? up * dt_s : way.z};
-  reference_W_ = reference_W_ + step;
-  velocity_W_m_s_ = (1.0 / dt_s) * step;
+  Vec3 change = Vec3{along * way.x, along * way.y, up} - velocity_W_m_s_;
+  const double most = acceleration * dt_s,
+               share = std::min(1.0, most / std::max(most, horizontal(change)));
+  velocity_W_m_s_ =
+      velocity_W_m_s_ + Vec3{share * change.x, share * change.y, std::clamp(change.z, -most, most)};
+  reference_W_ = reference_W_ + dt_s * velocity_W_m_s_;
 }
 
 void Navigator::turn(const Vehicle& vehicle, double dt_s) {
@@ -161,20 +182,22 @@ void Navigator::begin_item(const Vehicle& vehicle, const MissionItem& item) {
   item_until_.reset();
   is_descending_ = false;
   if (item.command == kChangeSpeed) {
-    if (item.parameters[1] > 0.0) cruise_m_s_ = item.parameters[1];
+    if (item.parameters[1] > 0.0) set_cruise(item.parameters[1]);
     return;
   }
-  const bool is_place = item.command != kDelay && item.command != kReturnToLaunch &&
-                        (item.latitude_deg != 0.0 || item.longitude_deg != 0.0);
-  if (!is_place) return;
+  if (item.command == kDelay || item.command == kReturnToLaunch) return;
   const bool is_relative = item.frame == 3 || item.frame == 6;
-  goal_W_ = vehicle.frame.point({item.latitude_deg, item.longitude_deg, 0.0});
-  const double altitude_m =
+  sim::Geodetic place = vehicle.frame.geodetic(reference_W_);
+  place.altitude_m =
       item.z_m + (is_relative ? vehicle.frame.geodetic(vehicle.home_W).altitude_m : 0.0);
-  goal_W_ = vehicle.frame.point({item.latitude_deg, item.longitude_deg, altitude_m});
+  const bool is_elsewhere = (item.latitude_deg != 0.0 || item.longitude_deg != 0.0) &&
+                            !(item.command == kTakeoffItem && vehicle.is_landed);
+  if (is_elsewhere) {
+    place.latitude_deg = item.latitude_deg;
+    place.longitude_deg = item.longitude_deg;
+  }
+  goal_W_ = vehicle.frame.point(place);
   if (item.command == kLandItem) goal_W_.z = reference_W_.z;
-  if (item.command == kTakeoffItem && vehicle.is_landed)
-    goal_W_ = {reference_W_.x, reference_W_.y, goal_W_.z};
   if (std::isfinite(item.parameters[3]) && item.command == kWaypoint && item.parameters[3] != 0.0) {
     goal_yaw_rad_ = vehicle.frame.yaw_from_ned(rad_from_deg(item.parameters[3]));
   } else {
@@ -185,10 +208,10 @@ void Navigator::begin_item(const Vehicle& vehicle, const MissionItem& item) {
 // An item is begun, reached, and held for as long as it says.
 void Navigator::fly_mission(Vehicle& vehicle, Missions& missions, Outbox& outbox) {
   if (missions.is_at_end()) {
-    next_mode_ = Mode::kHold;
+    if (!vehicle.is_landed) stay_at_goal();
     return;
   }
-  const MissionItem& item = missions.items()[missions.current()];
+  const MissionItem& item = missions.items()[missions.current().item];
   if (item_ != missions.current()) {
     item_ = missions.current();
     begin_item(vehicle, item);
@@ -219,10 +242,15 @@ void Navigator::fly_mission(Vehicle& vehicle, Missions& missions, Outbox& outbox
     item_until_ = vehicle.now + duration_from_seconds(std::min(held_s, 1e5));
   }
   if (vehicle.now < *item_until_) return;
+  missions.say_reached(outbox);
+  if (!item.goes_on) {
+    item_until_ = SimTime::max();
+    return;
+  }
   item_.reset();
-  if (!missions.reached(outbox)) {
+  if (!missions.go_on(outbox)) {
     outbox.say(6, "mission finished");
-    if (!vehicle.is_landed) next_mode_ = Mode::kHold;
+    if (!vehicle.is_landed) stay_at_goal();
   }
 }
 
@@ -237,18 +265,20 @@ uav::Setpoint Navigator::follow_reference() const {
 }
 
 // On the ground it stays there until it should rise; in the air it has landed when it should sink,
-// and does not.
+// or is disarmed, and does not sink.
 void Navigator::watch_ground(Vehicle& vehicle, const uav::Setpoint& wanted, Outbox& outbox) {
   const uav::BodyState& body = vehicle.estimate;
   const double below_m = wanted.has(uav::kPosition) ? body.p_WB.z - wanted.p_WB_m.z : 0.0;
   const double sinking_m_s =
       wanted.has(uav::kPosition) || !wanted.has(uav::kVelocity) ? 0.0 : -wanted.velocity_m_s.z;
   const bool should_sink =
-      below_m > kSinking_m || sinking_m_s > kSinking_m_s ||
+      !vehicle.is_armed || below_m > kSinking_m || sinking_m_s > kSinking_m_s ||
+      (is_acceleration(wanted) && wanted.acceleration_m_s2.z < -kSinking_m_s2) ||
       (wanted.has(uav::kThrust) && wanted.thrust_N < 0.5 * vehicle.hover_thrust_N);
-  const bool is_still = norm(body.v_WB) < kStill_m_s;
+  const bool is_still = std::abs(body.v_WB.z) < kStill_m_s && horizontal(body.v_WB) < kCarried_m_s;
   if (vehicle.is_landed) {
-    if (body.v_WB.z > kRisen_m_s && vehicle.is_armed) {
+    const bool has_risen = body.v_WB.z > kRisen_m_s || body.p_WB.z > ground_z_W_ + kRisen_m;
+    if (has_risen && vehicle.is_armed && should_rise(vehicle, wanted)) {
       vehicle.is_landed = false;
       vehicle.landed_at.reset();
       outbox.say(6, "took off");
@@ -264,6 +294,15 @@ void Navigator::watch_ground(Vehicle& vehicle, const uav::Setpoint& wanted, Outb
   vehicle.is_landed = true;
   vehicle.landed_at = vehicle.now;
   outbox.say(6, "landed");
+}
+
+// The reference of automatic modes rises if it should; the estimate may drift.
+bool Navigator::should_rise(const Vehicle& vehicle, const uav::Setpoint& wanted) const {
+  if (vehicle.mode != Mode::kOffboard) return velocity_W_m_s_.z > kRise_m_s;
+  if (wanted.has(uav::kPosition)) return wanted.p_WB_m.z > vehicle.estimate.p_WB.z + kRise_m;
+  if (wanted.has(uav::kVelocity)) return wanted.velocity_m_s.z > kRise_m_s;
+  if (wanted.has(uav::kThrust)) return wanted.thrust_N > vehicle.hover_thrust_N;
+  return is_acceleration(wanted) && wanted.acceleration_m_s2.z > kRise_m_s;
 }
 
 uav::Setpoint Navigator::step(Vehicle& vehicle, Missions& missions, const Offboard& offboard,
@@ -284,18 +323,13 @@ uav::Setpoint Navigator::step(Vehicle& vehicle, Missions& missions, const Offboa
       reference_W_.z = std::max(reference_W_.z, vehicle.estimate.p_WB.z - kMostLead_m);
     wanted = follow_reference();
     if (vehicle.mode == Mode::kTakeoff && vehicle.is_armed && is_at_goal(vehicle, kArrived_m))
-      next_mode_ = Mode::kHold;
+      stay_at_goal();
   }
   watch_ground(vehicle, wanted, outbox);
-  if (vehicle.is_armed && !vehicle.is_landed) return wanted;
+  if (vehicle.is_armed && (!vehicle.is_landed || should_rise(vehicle, wanted))) return wanted;
 
   // On the ground: rotors stand, or idle until it should rise.
-  const bool should_rise =
-      (wanted.has(uav::kPosition) && wanted.p_WB_m.z > vehicle.estimate.p_WB.z + 0.02) ||
-      (!wanted.has(uav::kPosition) && wanted.has(uav::kVelocity) && wanted.velocity_m_s.z > 0.05) ||
-      (wanted.has(uav::kThrust) && wanted.thrust_N > vehicle.hover_thrust_N) ||
-      wanted.mask == uav::kAcceleration;
-  if (vehicle.is_armed && should_rise) return wanted;
+  ground_z_W_ = vehicle.estimate.p_WB.z;
   uav::Setpoint idle;
   idle.mask = uav::kRotorSpeeds;
   idle.in_heading = false;

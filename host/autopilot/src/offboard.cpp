@@ -25,7 +25,7 @@ constexpr unsigned kNoRollRate = 1, kNoPitchRate = 2, kNoTurnRate = 4, kNoThrust
                    kNoAttitude = 128;
 
 // Gain of an axis whose position is held while others have velocities [1/s].
-constexpr double kPositionGain_1_s = 1.0;
+constexpr double kPositionGain_1_s = 1.0, kMostThere_m_s = 20.0;
 
 bool are_all(const std::array<std::optional<double>, 3>& axes) {
   return axes[0] && axes[1] && axes[2];
@@ -169,7 +169,9 @@ uav::Setpoint Offboard::setpoint_of(const Target& target, const Vehicle& vehicle
     Axes v = target.v_m_s;
     const auto p = parts(frame.point_to_ned(vehicle.estimate.p_WB));
     for (std::size_t i = 0; i < 3; ++i)
-      if (target.p_m[i]) v[i] = v[i].value_or(0.0) + kPositionGain_1_s * (*target.p_m[i] - p[i]);
+      if (target.p_m[i])
+        v[i] = v[i].value_or(0.0) + std::clamp(kPositionGain_1_s * (*target.p_m[i] - p[i]),
+                                               -kMostThere_m_s, kMostThere_m_s);
     setpoint.mask = uav::kVelocity;
     setpoint.velocity_m_s = frame.from_ned(vector(v));
   } else {

@@ -17,7 +17,8 @@ constexpr ParameterInfo kInfos[] = {
     {"COM_DISARM_LAND", 2.0, -1.0, 20.0, false, "disarms so long after landing [s]; −1: never"},
     {"COM_DISARM_PRFLT", 10.0, -1.0, 60.0, false,
      "disarms so long after arming if it stays on the ground [s]; −1: never"},
-    {"COM_LOW_BAT_ACT", 0, 0, 3, true, "at a critical charge: 0 warn, 1 return, 2 or 3 land"},
+    {"COM_LOW_BAT_ACT", 0, 0, 3, true,
+     "0 warn, 2 land at a critical charge, 3 return then, and land when it is almost empty"},
     {"COM_OBL_RC_ACT", 0, 0, 5, true,
      "without set-points in OFFBOARD: 3 return, 4 land, other values hold"},
     {"COM_OF_LOSS_T", 1.0, 0.0, 60.0, false, "for so long without set-points [s]"},
@@ -58,8 +59,10 @@ std::string complaint_about_parameter(const std::string& name, double value) {
     return "is no parameter of the built-in flight controller. It has " + names + ".";
   }
   const ParameterInfo& info = kInfos[*index];
-  if (value >= info.min && value <= info.max) return {};
-  return fmt::format("is {:g}; it must be from {:g} to {:g}.", value, info.min, info.max);
+  const bool is_whole = !info.is_integer || value == std::round(value);
+  if (value >= info.min && value <= info.max && is_whole) return {};
+  return fmt::format("is {:g}; it must be {}from {:g} to {:g}.", value,
+                     info.is_integer ? "a whole number " : "", info.min, info.max);
 }
 
 Parameters::Parameters(const std::map<std::string, double>& values) {

@@ -47,6 +47,9 @@ struct ParameterInfo {
 
 /// In the order of Parameter, which is that of their names.
 std::span<const ParameterInfo> parameter_infos();
+inline const ParameterInfo& info_of(Parameter parameter) {
+  return parameter_infos()[static_cast<std::size_t>(parameter)];
+}
 std::optional<std::size_t> find_parameter(std::string_view name);
 
 /// Their values.

@@ -16,8 +16,8 @@ using uav::Vec3;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kGravity_m_s2 = 9.80665;
 
-double ms_of(const TelemetrySource& s) {
-  return std::floor(to_seconds(s.vehicle.now) * 1e3 + 1e-6);
+std::int64_t ms_of(const TelemetrySource& s) {
+  return to_ns(s.vehicle.now) / 1'000'000;
 }
 std::int64_t us_of(const TelemetrySource& s) {
   return to_ns(s.vehicle.now) / 1000;
@@ -325,7 +325,7 @@ void autopilot_version(const TelemetrySource&, Message& m) {
 }
 
 void mission_current(const TelemetrySource& s, Message& m) {
-  m.set("seq", std::min(s.missions.current(), s.missions.items().size()));
+  m.set("seq", s.missions.shown()).set("total", s.missions.items().size());
 }
 
 struct StreamRow {
@@ -376,8 +376,10 @@ void Telemetry::step(const TelemetrySource& source, Outbox& outbox) {
   for (std::size_t i = 0; i < streams_.size(); ++i) {
     Stream& stream = streams_[i];
     const bool is_due = stream.interval && source.vehicle.now >= stream.next;
-    if (is_due)
-      while (stream.next <= source.vehicle.now) stream.next += *stream.interval;
+    if (is_due) {
+      const Duration now = source.vehicle.now.time_since_epoch();
+      stream.next = SimTime((now / *stream.interval + 1) * *stream.interval);
+    }
     if (!is_due && !stream.is_requested) continue;
     stream.is_requested = false;
     Message message(kStreams[i].name);
@@ -402,17 +404,17 @@ bool Telemetry::set_interval(std::string_view name, double interval_us) {
                         ? interval_of(*row)
                         : std::optional(duration_from_seconds(
                               std::clamp(interval_us, kLeast_us, kMost_us) * 1e-6));
+  stream.next = SimTime{};
   return true;
 }
 
-bool Telemetry::tell_interval(std::uint32_t id, Outbox& outbox) const {
-  const auto* type = mavlink::find_type(id);
-  const StreamRow* row = type == nullptr ? nullptr : find_stream(type->name);
+bool Telemetry::tell_interval(const mavlink::MessageType& type, Outbox& outbox) const {
+  const StreamRow* row = find_stream(type.name);
   if (row == nullptr) return false;
   const auto& interval = streams_[static_cast<std::size_t>(row - kStreams)].interval;
   outbox.send(
       Message("MESSAGE_INTERVAL")
-          .set("message_id", id)
+          .set("message_id", type.id)
           .set("interval_us", interval ? static_cast<double>(to_ns(*interval)) / 1e3 : -1.0));
   return true;
 }

@@ -34,7 +34,7 @@ class Telemetry {
   bool request(std::string_view name);
   /// As MAV_CMD_SET_MESSAGE_INTERVAL: −1: never, 0: as at first. False: it is no stream.
   bool set_interval(std::string_view name, double interval_us);
-  bool tell_interval(std::uint32_t id, Outbox& outbox) const;
+  bool tell_interval(const mavlink::MessageType& type, Outbox& outbox) const;
 
  private:
   struct Stream {

@@ -1,0 +1,131 @@
+#include "flight.h"
+
+namespace tether::autopilot {
+namespace {
+
+TEST(BuiltIn, IsSetDownBeforeItBoots) {
+  Flight flight({}, {0, 0, 0.3});
+  flight.run(0.9);
+  EXPECT_TRUE(flight.heard.empty());
+  ASSERT_TRUE(flight.run_until([&] { return !flight.heard.empty(); }, 5.0));
+  EXPECT_EQ(flight.body.p_WB.z, 0.0);
+  EXPECT_FALSE(flight.is_armed());
+  EXPECT_EQ(flight.last("EXTENDED_SYS_STATE")->integer("landed_state"), 1);
+}
+
+TEST(BuiltIn, BootsOnAPlatformThatMoves) {
+  Flight flight;
+  flight.carried_m_s = {1.0, 0.0, 0.0};
+  flight.boot();
+  EXPECT_FALSE(flight.heard.empty());
+}
+
+TEST(BuiltIn, MayStartInTheAir) {
+  Flight flight(Flight::in_air(), {1, 2, 3});
+  flight.run(2.0);
+  EXPECT_TRUE(flight.is_armed());
+  EXPECT_EQ(flight.shown_mode(), "AUTO.LOITER");
+  EXPECT_LT(norm(flight.body.p_WB - uav::Vec3{1, 2, 3}), 0.05);
+}
+
+TEST(BuiltIn, AnswersPingAndTimesync) {
+  Flight flight;
+  flight.boot();
+  flight.heard.clear();
+  flight.send(Message("TIMESYNC").set("ts1", 12'345));
+  flight.send(Message("TIMESYNC").set("tc1", 1).set("ts1", 2));
+  flight.send(Message("PING").set("seq", 7), {42, 8});
+  flight.run(0.004);
+  EXPECT_EQ(flight.count("TIMESYNC"), 1U) << "an answer is not answered";
+  EXPECT_EQ(flight.last("TIMESYNC")->integer("ts1"), 12'345);
+  EXPECT_EQ(flight.last("TIMESYNC")->integer("tc1"), to_ns(flight.now) - 4'000'000);
+  ASSERT_NE(flight.last("PING"), nullptr);
+  EXPECT_EQ(flight.last("PING")->integer("target_system"), 42);
+  EXPECT_EQ(flight.last("PING")->integer("seq"), 7);
+}
+
+TEST(BuiltIn, ReadsFramesFromPiecesAndAmongGarbage) {
+  Flight flight;
+  flight.boot();
+  flight.heard.clear();
+  const Bytes frame = encode(Message("TIMESYNC").set("ts1", 5), {1, 191}, 0);
+  flight.send_bytes({1, 2, 0xFD, 3});
+  flight.run(0.004);
+  flight.send_bytes(Bytes(300, 0x55));
+  flight.send_bytes(Bytes(frame.begin(), frame.begin() + 9));
+  flight.run(0.004);
+  flight.send_bytes(Bytes(frame.begin() + 9, frame.end()));
+  flight.run(0.004);
+  EXPECT_EQ(flight.count("TIMESYNC"), 1U);
+}
+
+// The estimate goes where it was sent; the vehicle is beside by the drift.
+TEST(BuiltIn, FliesOnItsOdometry) {
+  Flight flight;
+  flight.has_odometry = true;
+  flight.drift_m = {0.4, -0.2, 0.1};
+  flight.take_off();
+  const Message to = position_target(2.0, 0.0, -2.5);  // 2 m to the north of the start
+  flight.stream(to, 1.2);
+  flight.drift_m_s = {0.05, 0.0, 0.0};
+  ASSERT_EQ(flight.mode(6), kAccepted);
+  flight.stream(to, 8.0);
+  const uav::Vec3 start_W{0.4, -0.2, 0.1};  // of the estimate
+  const uav::Vec3 estimate = flight.body.p_WB + flight.drift_m;
+  EXPECT_LT(norm(estimate - start_W - uav::Vec3{0, 2.0, 2.5}), 0.1);
+  EXPECT_LT(flight.body.p_WB.x, -0.3) << "so the vehicle moves against the drift";
+  EXPECT_NEAR(flight.last("LOCAL_POSITION_NED")->number("x"), 2.0, 0.1);
+}
+
+TEST(BuiltIn, TurnsTheEstimateToTheYawThatIsAskedFor) {
+  Flight flight;
+  flight.has_odometry = true;
+  flight.drift_rad = 0.3;
+  flight.take_off();
+  Message to = target(kPositionOnly & ~1024).set("z", -2.5).set("yaw", 1.0);
+  flight.stream(to, 1.2);
+  ASSERT_EQ(flight.mode(6), kAccepted);
+  flight.stream(to, 4.0);
+  EXPECT_NEAR(flight.last("ATTITUDE")->number("yaw"), 1.0, 0.02);
+  EXPECT_NEAR(flight.yaw(), 1.5708 - 1.0 - 0.3, 0.02);
+}
+
+TEST(BuiltIn, AVelocityIsThatOfTheEstimate) {
+  Flight flight;
+  flight.has_odometry = true;
+  flight.take_off();
+  const Message to = target(kVelocityOnly).set("vx", 1.0);
+  flight.stream(to, 1.2);
+  flight.drift_m_s = {0.0, 0.3, 0.0};
+  ASSERT_EQ(flight.mode(6), kAccepted);
+  flight.stream(to, 4.0);
+  EXPECT_NEAR(flight.body.v_WB.y, 0.7, 0.05);
+}
+
+TEST(BuiltIn, StaysOnTheGroundWhileItsEstimateDrifts) {
+  Flight flight({.parameters = {{"COM_DISARM_PRFLT", -1.0}}});
+  flight.has_odometry = true;
+  flight.boot();
+  flight.command(kArm, {1});
+  for (const double drift : {0.05, -0.05}) {
+    flight.drift_m_s.z = drift;
+    flight.run(10.0);
+    EXPECT_EQ(flight.body.p_WB.z, 0.0);
+    EXPECT_EQ(flight.last("EXTENDED_SYS_STATE")->integer("landed_state"), 1);
+  }
+}
+
+TEST(BuiltIn, IsAFunctionOfWhatItIsGiven) {
+  const auto fly = [] {
+    Flight flight;
+    flight.take_off();
+    flight.stream(position_target(1, 1, -2), 1.2);
+    flight.mode(6);
+    flight.stream(position_target(1, 1, -2), 2.0);
+    return flight.body.p_WB;
+  };
+  EXPECT_EQ(fly(), fly());
+}
+
+}  // namespace
+}  // namespace tether::autopilot

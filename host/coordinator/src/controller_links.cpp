@@ -73,7 +73,7 @@ std::optional<ControllerLinks::Arrival> ControllerLinks::handle_next(Stepper& st
   schedule(uav);
   const SimTime at = message.arrives_at;
   log(stepper.st(), uav, false, message,
-      inboxes.is_full(uav) ? record::kInboxFull : record::kDelivered);
+      inboxes.is_full_for_controller(uav) ? record::kInboxFull : record::kDelivered);
   const bool has_arrived =
       inboxes.accept(uav, {link::kAutopilot, message.sequence, message.sent_at, at, message.bytes});
   return has_arrived ? std::optional(Arrival{uav, at}) : std::nullopt;

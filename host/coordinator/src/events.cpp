@@ -47,8 +47,8 @@ void Coordinator::Impl::handle_radio() {
 void Coordinator::Impl::deliver(Session& session, ExecTime arrived_at) {
   for (PendingInteraction& pending : session.open) {
     record::Interaction& entry = pending.entry;
-    if (!entry.receive_until || pending.is_promised || arrived_at > *entry.receive_until) continue;
-    pending.is_promised = radio_.promise(session.uav);
+    if (!entry.receive_until || pending.received || arrived_at > *entry.receive_until) continue;
+    pending.received = radio_.take_first(session.uav, same_instant(arrived_at));
     entry.reply_at = std::max(arrived_at, entry.request_at);
     if (const auto due = time_of(session).move_up(entry.sequence, entry.reply_at))
       server_->send(session.peer, *due);

@@ -61,7 +61,11 @@ void Coordinator::Impl::reply(Session& session, std::size_t open_index, SimTime 
                       .sample = stepper_.measure(session.uav, entry),
                       .computing = session.time_given()};
   if (entry.kind == record::kBattery) message.battery = stepper_.read_battery(session.uav, entry);
-  if (pending.is_promised) radio_.receive(session.uav, entry, message);
+  if (const auto& received = pending.received) {
+    entry.received = {received->from, received->sequence, received->at};
+    radio_.received(session.uav, *received);
+    message.message = {received->from, received->sent_at, received->at, *received->bytes};
+  }
   const std::optional<uav::CameraSample> image = image_to_record(
       session, pending.request, message, entry.sample_state_at.value_or(SimTime{}), options_);
   entry.st_at_release = st;

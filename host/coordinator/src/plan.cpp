@@ -63,8 +63,9 @@ ExecTime plan_receive(std::size_t uav, PendingInteraction& pending,
   const ExecTime last = from_ns<ExecTime>(link::kMaxTimestampNs - 1);
   entry.receive_until =
       receive.timeout < last - entry.request_at ? entry.request_at + receive.timeout : last;
-  pending.is_promised = radio.promise(uav);
-  return pending.is_promised ? entry.request_at : *entry.receive_until;
+  pending.received = radio.take_first(uav, same_instant(*entry.receive_until));
+  return pending.received ? std::max(entry.request_at, same_instant(pending.received->at))
+                          : *entry.receive_until;
 }
 
 }  // namespace

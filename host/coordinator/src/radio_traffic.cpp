@@ -10,11 +10,9 @@ namespace tether::coordinator {
 
 RadioTraffic::RadioTraffic(const radio::Settings& settings, std::uint64_t seed,
                            std::vector<std::string> uavs, RunLog& log)
-    : inbox_messages_(settings.inbox_messages),
-      uavs_(std::move(uavs)),
-      medium_(settings, seed, uavs_),
-      boxes_(uavs_.size()),
-      log_(&log) {}
+    : uavs_(std::move(uavs)), medium_(settings, seed, uavs_), boxes_(uavs_.size()), log_(&log) {
+  for (Box& box : boxes_) box.of_radio.most = settings.inbox_messages;
+}
 
 std::vector<std::string> RadioTraffic::peers_of(std::size_t uav) const {
   std::vector<std::string> peers = uavs_;
@@ -35,25 +33,18 @@ void RadioTraffic::send(std::size_t uav, std::uint64_t sequence, SimTime at,
 
 bool RadioTraffic::accept(std::size_t uav, Received message) {
   Box& box = boxes_[uav];
-  if (box.is_closed || is_full(uav)) return false;
+  if (box.is_closed || is_full_for_controller(uav)) return false;
+  ++box.of_controller.taken;
   box.inbox.push_back(std::move(message));
   return true;
 }
 
-bool RadioTraffic::promise(std::size_t uav) {
+std::optional<Received> RadioTraffic::take_first(std::size_t uav, SimTime latest) {
   Box& box = boxes_[uav];
-  if (box.inbox.size() <= box.promised) return false;
-  ++box.promised;
-  return true;
-}
-
-void RadioTraffic::receive(std::size_t uav, record::Interaction& entry, link::Reply& reply) {
-  Box& box = boxes_[uav];
-  const Received& message = box.inbox.front();
-  entry.received = {message.from, message.sequence, message.at};
-  reply.message = {message.from, message.sent_at, message.at, *message.bytes};
+  if (box.inbox.empty() || box.inbox.front().at > latest) return std::nullopt;
+  Received message = std::move(box.inbox.front());
   box.inbox.pop_front();
-  --box.promised;
+  return message;
 }
 
 std::optional<sync::SutTime> RadioTraffic::next() const {
@@ -71,17 +62,20 @@ std::vector<radio::Arrival> RadioTraffic::handle_next(const radio::Medium::LinkO
 bool RadioTraffic::take(SimTime st, radio::Arrival arrival) {
   constexpr std::size_t kDroppedPerQueued = 9;  // that a radio may be overloaded by for ever
   Box& sender = boxes_[arrival.message.from];
-  if (arrival.outcome == radio::Outcome::kDelivered && is_full(arrival.to))
+  Box& receiver = boxes_[arrival.to];
+  if (arrival.outcome == radio::Outcome::kDelivered && receiver.of_radio.is_full())
     arrival.outcome = radio::Outcome::kInboxFull;
   log_arrival(st, arrival);
   if (arrival.outcome == radio::Outcome::kQueueFull)
     ++sender.full_queues;
   else
     sender.full_queues -= std::min(sender.full_queues, kDroppedPerQueued);
-  if (arrival.outcome != radio::Outcome::kDelivered) return false;
+  if (arrival.outcome != radio::Outcome::kDelivered || receiver.is_closed) return false;
   const radio::Message& message = arrival.message;
-  return accept(arrival.to, {uavs_[message.from], message.sequence, message.sent_at, arrival.at,
-                             message.bytes});
+  ++receiver.of_radio.taken;
+  receiver.inbox.push_back(
+      {uavs_[message.from], message.sequence, message.sent_at, arrival.at, message.bytes});
+  return true;
 }
 
 std::optional<Fault> RadioTraffic::flood_of(std::size_t uav) const {

@@ -1,10 +1,10 @@
 #pragma once
 
+#include "received.h"
 #include "run_log.h"
 #include "validator.h"
 
 #include <deque>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -35,21 +35,16 @@ class RadioTraffic {
   /// `message.to` is a name of `uavs`, or empty: all others.
   void send(std::size_t uav, std::uint64_t sequence, SimTime at, const link::SendMessage& message);
 
-  /// A message of another kind has arrived, which the SUT receives in turn. False: the inbox is
-  /// full, or closed.
-  struct Received {
-    std::string from;
-    std::uint64_t sequence = 0;
-    SimTime sent_at;
-    SimTime at;
-    std::shared_ptr<const std::vector<std::uint8_t>> bytes;
-  };
+  /// A message of the flight controller has arrived, which the SUT receives in turn. False: there
+  /// is no room for it, or the inbox is closed.
   bool accept(std::size_t uav, Received message);
-  bool is_full(std::size_t uav) const { return boxes_[uav].inbox.size() >= inbox_messages_; }
-  /// Promises a message to a call, if one has arrived that no other call was promised.
-  bool promise(std::size_t uav);
-  /// Gives the first message to a call that was promised one.
-  void receive(std::size_t uav, record::Interaction& entry, link::Reply& reply);
+  /// Messages of flight controllers and of the radio have rooms of their own.
+  bool is_full_for_controller(std::size_t uav) const { return boxes_[uav].of_controller.is_full(); }
+  /// Takes the first message that has arrived by then, for a call. In free running, it can have
+  /// arrived within the step after ST.
+  std::optional<Received> take_first(std::size_t uav, SimTime latest);
+  /// The call has ended: there is room for another one.
+  void received(std::size_t uav, const Received& message) { --room_of(uav, message.from).taken; }
   /// Its SUT receives nothing any more.
   void close(std::size_t uav) { boxes_[uav].is_closed = true; }
 
@@ -65,16 +60,25 @@ class RadioTraffic {
   void log_in_transit(SimTime st, const StepGrid& grid);
 
  private:
+  static constexpr std::size_t kControllerMessages = 1024;
+
+  struct Room {
+    std::size_t most = 0;   // messages
+    std::size_t taken = 0;  // by those that no call has received yet
+    bool is_full() const { return taken >= most; }
+  };
   struct Box {
     std::deque<Received> inbox;  // arrived, in the order of time
-    std::size_t promised = 0;    // calls that will receive one of them
+    Room of_radio, of_controller{.most = kControllerMessages};
     bool is_closed = false;
     RadioBudget budget;
     std::size_t full_queues = 0;  // messages without room, beyond nine for each that was sent
   };
+  Room& room_of(std::size_t uav, const std::string& from) {
+    return from == link::kAutopilot ? boxes_[uav].of_controller : boxes_[uav].of_radio;
+  }
   void log_arrival(SimTime st, const radio::Arrival& arrival);
 
-  std::size_t inbox_messages_;
   std::vector<std::string> uavs_;
   radio::Medium medium_;
   std::vector<Box> boxes_;  // by UAV

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "received.h"
 #include "validator.h"
 
 #include <cstdint>
@@ -21,8 +22,8 @@ namespace tether::coordinator {
 /// A request between its arrival and its reply.
 struct PendingInteraction {
   link::Request request{};
-  record::Interaction entry;  ///< complete when the reply is sent
-  bool is_promised = false;   ///< a message is in the inbox for this call
+  record::Interaction entry;           ///< complete when the reply is sent
+  std::optional<Received> received{};  ///< has arrived for this call
 };
 
 /// The state of one SUT and its UAV.

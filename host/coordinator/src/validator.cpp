@@ -189,7 +189,7 @@ MaybeFault RadioBudget::spend(SimTime st, std::size_t bytes) {
   bytes_in_second_ += bytes;
   const auto flood = [](std::string_view limit, std::string_view where, SimTime at) {
     return Fault{Kind::kFlood,
-                 fmt::format("more than {} by radio {} ST {:.6g} s", limit, where, to_seconds(at))};
+                 fmt::format("more than {} {} ST {:.6g} s", limit, where, to_seconds(at))};
   };
   if (++in_step_ > kMaxMessagesInAStep)
     return flood(fmt::format("{} messages", kMaxMessagesInAStep), "at", st);

@@ -136,6 +136,7 @@ class MemoryRecorder final : public record::Recorder {
   std::vector<std::pair<SimTime, record::Contact>> contacts;
   std::vector<record::Battery> batteries;
   std::vector<record::RadioMessage> radio;
+  std::vector<record::AutopilotMessage> autopilot;
   std::vector<record::Image> images;
   std::vector<record::RawImage> raw_images;
   std::optional<record::Footer> footer;
@@ -157,6 +158,7 @@ class MemoryRecorder final : public record::Recorder {
   void add(SimTime, const record::Stop& m) { stops.push_back(m); }
   void add(SimTime, const record::Battery& m) { batteries.push_back(m); }
   void add(SimTime, const record::RadioMessage& m) { radio.push_back(m); }
+  void add(SimTime, const record::AutopilotMessage& m) { autopilot.push_back(m); }
   void add(SimTime, const record::Image& m) { images.push_back(m); }
   void add(SimTime, const record::RawImage& m) { raw_images.push_back(m); }
   void add(SimTime at, const record::Contact& m) { contacts.emplace_back(at, m); }

@@ -39,7 +39,7 @@ class FreeTime final : public Timeline {
   }
   std::optional<link::Due> move_up(sync::CallId call, ExecTime reply_at) override {
     std::erase_if(*calls_, [&](const auto& own) { return own.uav == uav() && own.id == call; });
-    calls_->insert({grid_.floor(same_instant(reply_at)), uav(), call});
+    calls_->insert({grid_.ceil(same_instant(reply_at)), uav(), call});
     return std::nullopt;
   }
   void leave() override {

@@ -86,16 +86,6 @@ void read_commands(const toml::Table& table, Scenario& scenario, UavSetup& uav) 
 
 constexpr std::string_view kAutopilot = "autopilot";  // as link::kAutopilot
 
-/// With a flight controller, commands are its own.
-void reject_beside_controller(const toml::Table& table) {
-  for (const char* key :
-       {"command_latency_ms", "command_latency", "setpoint_timeout_ms", "on_setpoint_loss"})
-    if (table.has(key))
-      table.fail(key,
-                 "has no effect beside 'flight_controller', which has its own link and time-out. "
-                 "Remove this key; see 'link_latency_ms' and the parameter COM_OF_LOSS_T.");
-}
-
 UavSetup read_uav(const toml::Table& table, const std::optional<Sut>& default_sut,
                   Scenario& scenario) {
   constexpr toml::Range kCoordinate_m{.min = -1e5, .max = 1e5};
@@ -117,7 +107,6 @@ UavSetup read_uav(const toml::Table& table, const std::optional<Sut>& default_su
     scenario.files.push_back(uav.energy->file);
   }
   uav.flight_controller = read_flight_controller(table);
-  if (uav.flight_controller) reject_beside_controller(table);
   uav.seat = read_seat(table, scenario);
   uav.sut = read_sut(table, default_sut, scenario);
   if (uav.sut.mission)

@@ -1,0 +1,124 @@
+#include "tables/read_flight_controller.h"
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <tether/base_testing/scratch_folder.h>
+#include <tether/base_testing/thrown_error.h>
+#include <tether/scenario/scenario.h>
+
+namespace tether::scenario {
+namespace {
+
+using testing::HasSubstr;
+
+std::optional<FlightController> read_one(const std::string& uav) {
+  const toml::Document document = toml::Document::parse("[uav]\n" + uav, "s.toml");
+  return read_flight_controller(document.root().table("uav"));
+}
+
+TEST(ReadFlightController, IsNoneByDefault) {
+  EXPECT_FALSE(read_one(""));
+  EXPECT_FALSE(read_one("flight_controller = \"none\""));
+  EXPECT_FALSE(read_one("flight_controller = { kind = \"none\" }"));
+}
+
+TEST(ReadFlightController, IsAName) {
+  const auto controller = read_one("flight_controller = \"built-in\"");
+  ASSERT_TRUE(controller);
+  EXPECT_EQ(controller->kind, FlightController::Kind::kBuiltIn);
+  EXPECT_EQ(controller->link_baud, 0.0);
+  EXPECT_EQ(controller->link_latency, Duration(0));
+  EXPECT_FALSE(controller->starts_in_air);
+  EXPECT_EQ(controller->at.line, 2);
+}
+
+TEST(ReadFlightController, IsATableWithSettings) {
+  const auto controller = read_one(R"([uav.flight_controller]
+kind = "built-in"
+link_baud = 921600
+link_latency_ms = 2.5
+starts_in_air = true
+parameters = { MPC_XY_CRUISE = 3, COM_OBL_RC_ACT = 4 }
+)");
+  ASSERT_TRUE(controller);
+  EXPECT_EQ(controller->link_baud, 921'600.0);
+  EXPECT_EQ(controller->link_latency, Duration(2'500'000));
+  EXPECT_TRUE(controller->starts_in_air);
+  EXPECT_EQ(controller->parameters,
+            (std::map<std::string, double>{{"MPC_XY_CRUISE", 3.0}, {"COM_OBL_RC_ACT", 4.0}}));
+}
+
+TEST(ReadFlightController, RefusesBadValuesWhereTheyAre) {
+  struct Case {
+    const char* text;
+    int line;
+    const char* reason;
+  };
+  for (const auto& [text, line, reason] : std::initializer_list<Case>{
+           {"flight_controller = \"px5\"", 2, "built-in"},
+           {"flight_controller = 3", 2, "flight_controller"},
+           {"[uav.flight_controller]\nkind = \"x\"", 3, "built-in"},
+           {"[uav.flight_controller]\nlink_baud = 1", 2, "kind"},
+           {"[uav.flight_controller]\nkind = \"built-in\"\nlink_baud = -1", 4, "link_baud"},
+           {"[uav.flight_controller]\nkind = \"built-in\"\nlink_latency_ms = 1e9", 4, "latency"},
+           {"[uav.flight_controller]\nkind = \"built-in\"\nlink_latency_s = 1", 4, "latency"},
+           {"[uav.flight_controller]\nkind = \"built-in\"\nparameters = { MPC_SPEED = 1 }", 4,
+            "no parameter of the built-in flight controller"},
+           {"[uav.flight_controller]\nkind = \"built-in\"\nparameters = { NAV_ACC_RAD = 0 }", 4,
+            "it must be from 0.05 to 200"},
+           {"[uav.flight_controller]\nkind = \"built-in\"\nparameters = { NAV_ACC_RAD = \"x\" }", 4,
+            "NAV_ACC_RAD"},
+           {"[uav.flight_controller]\nkind = \"built-in\"\nparameters = { COM_OBL_RC_ACT = 1.5 }",
+            4, "a whole number from 0 to 5"},
+           {"flight_controller = \"built-in\"\ncommand_latency_ms = 3", 3,
+            "has no effect beside 'flight_controller'"},
+           {"setpoint_timeout_ms = 3\nflight_controller = \"built-in\"", 2, "COM_OF_LOSS_T"},
+           {"flight_controller = \"built-in\"\non_setpoint_loss = \"land\"", 3, "no effect"}}) {
+    const Error error = bad_file_error([&] { read_one(text); });
+    EXPECT_EQ(error.where().line, line) << text;
+    EXPECT_THAT(std::string(error.what()), HasSubstr(reason)) << text;
+  }
+}
+
+class WithFlightController : public testing::Test {
+ protected:
+  Scenario load(const std::string& keys, const std::string& name = "uav1") {
+    return load_scenario(folder_.write("s.toml", R"(name = "s"
+world = "empty"
+simulator = "mujoco"
+time_limit_s = 10
+)" + keys + R"(
+[sut]
+command = ["true"]
+[[uav]]
+name = ")" + name + R"("
+model = "hummingbird"
+position_m = [0, 0, 0.1]
+flight_controller = "built-in"
+[[condition]]
+name = "host"
+target = "host"
+clock = "cpu"
+)"));
+  }
+  ScratchFolder folder_;
+};
+
+TEST_F(WithFlightController, LandsFasterThanTaskProgramsDo) {
+  EXPECT_GT(load("").max_contact_speed_m_s, 0.7) << "MPC_LAND_SPEED";
+  EXPECT_EQ(load("max_contact_speed_m_s = 0.3").max_contact_speed_m_s, 0.3);
+}
+
+TEST_F(WithFlightController, ItsNameIsNotThatOfAUav) {
+  const Error error = bad_file_error([&] { load("", "autopilot"); });
+  EXPECT_THAT(std::string(error.what()), HasSubstr("is the name of flight controllers"));
+  EXPECT_GT(error.where().line, 0);
+}
+
+}  // namespace
+}  // namespace tether::scenario

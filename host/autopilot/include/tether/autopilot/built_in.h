@@ -16,7 +16,7 @@ inline constexpr Duration kBuiltInPeriod = std::chrono::milliseconds(4);
 struct BuiltInSettings {
   std::uint8_t system_id = 1;
   sim::Place place{};  ///< of W
-  uav::FlightLimits limits;
+  uav::FlightLimits limits{};
   double hover_thrust_N = 0.0;
   bool starts_in_air = false;                  ///< armed, in Hold; else landed and disarmed
   std::map<std::string, double> parameters{};  ///< values of parameters, by name
