@@ -133,6 +133,14 @@ TETHER_IN_PLACE int getsockname(int socket, sockaddr* __restrict address,
   return TETHER_REAL(getsockname)(socket, address, size);
 }
 
+TETHER_IN_PLACE int getpeername(int socket, sockaddr* __restrict address,
+                                socklen_t* __restrict size) {
+  Agent* const agent = agent_of(socket);
+  const int result = TETHER_REAL(getpeername)(socket, address, size);
+  if (agent != nullptr && result == 0) agent->port().believe(address, size);
+  return result;
+}
+
 TETHER_IN_PLACE int close(int fd) {
   if (Agent* const agent = tether::as_is::agent()) agent->port().forget(fd);
   return TETHER_REAL(close)(fd);
