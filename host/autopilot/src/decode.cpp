@@ -45,7 +45,7 @@ std::string values_of(const mavlink::Message& m, const mavlink::Field& field) {
 std::vector<Decoded> decode(const Bytes& bytes) {
   mavlink::Decoder decoder;
   std::vector<Decoded> messages;
-  for (const mavlink::Frame& frame : decoder.push(bytes)) {
+  for (const mavlink::Frame& frame : decoder.push_datagram(bytes)) {
     const mavlink::Message& m = frame.message;
     std::string fields = "{";
     for (const mavlink::Field& field : m.type().fields) {

@@ -89,8 +89,7 @@ class WithFlightController : public testing::Test {
  protected:
   Scenario load(const std::string& keys, const std::string& name = "uav1") {
     return load_scenario(folder_.write("s.toml", R"(name = "s"
-world = "empty"
-simulator = "mujoco"
+world = "room"
 time_limit_s = 10
 )" + keys + R"(
 [sut]
@@ -102,7 +101,8 @@ position_m = [0, 0, 0.1]
 flight_controller = "built-in"
 [[condition]]
 name = "host"
-target = "host"
+
+policy = "conservative_barrier"
 clock = "cpu"
 )"));
   }
