@@ -35,20 +35,24 @@ class Companion {
   explicit Companion(tether::client::Vehicle& vehicle) : vehicle_(vehicle) {}
 
   void send(const Message& message) {
-    require(vehicle_.send(kAutopilot, tether::mavlink::encode(message, {1, 191}, sequence_++)));
+    require(
+        vehicle_.send(kAutopilot, tether::mavlink::encode(message, {system_, 191}, sequence_++)));
   }
 
   // Takes what arrives until then.
   void listen(Duration duration) {
     const auto until = vehicle_.now() + duration;
     while (auto message = vehicle_.receive(std::max(Duration(0), until - vehicle_.now())))
-      for (const auto& frame : decoder_.push(message->bytes)) on_message(frame.message);
+      for (const auto& frame : decoder_.push(message->bytes)) {
+        system_ = frame.from.system;
+        on_message(frame.message);
+      }
   }
 
   void command(int id, double p1 = 0, double p2 = 0, double p3 = 0, double p7 = NAN) {
     ack.reset();
     send(Message("COMMAND_LONG")
-             .set("target_system", 1)
+             .set("target_system", system_)
              .set("target_component", 1)
              .set("command", id)
              .set("param1", p1)
@@ -61,7 +65,7 @@ class Companion {
 
   void position(double x, double y, double z) {
     send(Message("SET_POSITION_TARGET_LOCAL_NED")
-             .set("target_system", 1)
+             .set("target_system", system_)
              .set("target_component", 1)
              .set("coordinate_frame", 1)
              .set("type_mask", 0x0DF8)
@@ -100,6 +104,7 @@ class Companion {
   tether::client::Vehicle& vehicle_;
   tether::mavlink::Decoder decoder_;
   std::uint8_t sequence_ = 0;
+  std::uint8_t system_ = 1;
 };
 
 void compute(int ms) {

@@ -105,7 +105,7 @@ void append_json(std::string& out, const Annotation& message) {
 void append_json(std::string& out, const AutopilotMessage& message) {
   MemberWriter writer(out);
   members(writer, message);
-  writer.json().raw("fields", is_json_object(message.fields) ? message.fields : "{}");
+  writer.json().raw("fields", message.fields.empty() ? "{}" : message.fields);
   writer.close();
 }
 

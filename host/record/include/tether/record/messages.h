@@ -236,7 +236,7 @@ struct AutopilotMessage {
   std::optional<SimTime> acted_at{};  ///< the step of the controller that has taken it
   std::string outcome;                ///< "delivered", "queue_full", "inbox_full" or "waiting"
   std::string name;    ///< of the MAVLink message; empty: the bytes are no message that is known
-  std::string fields;  ///< its values: a JSON object
+  std::string fields;  ///< its values: a JSON object, which is written as it is; empty: none
 
   std::string_view direction() const { return to_controller ? "to" : "from"; }
 };
