@@ -368,6 +368,12 @@ std::optional<Duration> interval_of(const StreamRow& row) {
 
 }  // namespace
 
+std::vector<StreamRate> stream_rates() {
+  std::vector<StreamRate> rates;
+  for (const StreamRow& row : kStreams) rates.push_back({row.name, row.rate_hz});
+  return rates;
+}
+
 Telemetry::Telemetry() {
   for (const StreamRow& row : kStreams) streams_.push_back({.interval = interval_of(row)});
 }

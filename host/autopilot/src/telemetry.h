@@ -23,6 +23,13 @@ struct TelemetrySource {
   const Missions& missions;
 };
 
+/// A message that can be sent regularly, and how often it is at first.
+struct StreamRate {
+  std::string_view name;
+  double rate_hz = 0.0;  ///< 0: only on request
+};
+std::vector<StreamRate> stream_rates();
+
 /// The streams: which messages are sent how often.
 class Telemetry {
  public:

@@ -106,7 +106,7 @@ TEST(BuiltIn, StaysOnTheGroundWhileItsEstimateDrifts) {
   Flight flight({.parameters = {{"COM_DISARM_PRFLT", -1.0}}});
   flight.has_odometry = true;
   flight.boot();
-  flight.command(kArm, {1});
+  flight.command(kArmCommand, {1});
   for (const double drift : {0.05, -0.05}) {
     flight.drift_m_s.z = drift;
     flight.run(10.0);

@@ -7,14 +7,14 @@ TEST(Commander, ArmsOnTheGroundAndSaysSo) {
   Flight flight;
   flight.boot();
   EXPECT_FALSE(flight.is_armed());
-  EXPECT_EQ(flight.command(kArm, {1}), kAccepted);
+  EXPECT_EQ(flight.command(kArmCommand, {1}), kAccepted);
   EXPECT_TRUE(flight.was_said("armed"));
   EXPECT_TRUE(flight.is_armed()) << "a heartbeat shows it at once";
-  EXPECT_EQ(flight.command(kArm, {1}), kAccepted) << "it is armed already";
-  EXPECT_EQ(flight.command(kArm, {0}), kAccepted);
+  EXPECT_EQ(flight.command(kArmCommand, {1}), kAccepted) << "it is armed already";
+  EXPECT_EQ(flight.command(kArmCommand, {0}), kAccepted);
   EXPECT_FALSE(flight.is_armed());
-  EXPECT_EQ(flight.command(kArm, {0.4}), kUnsupported);
-  EXPECT_EQ(flight.command(kArm, {kNone}), kUnsupported);
+  EXPECT_EQ(flight.command(kArmCommand, {0.4}), kUnsupported);
+  EXPECT_EQ(flight.command(kArmCommand, {kNone}), kUnsupported);
 }
 
 TEST(Commander, DeniesArmingWithTheReason) {
@@ -32,38 +32,38 @@ TEST(Commander, DeniesArmingWithTheReason) {
     flight.charge = charge;
     flight.boot();
     EXPECT_EQ(flight.mode(main, sub), kAccepted) << "any mode can be chosen on the ground";
-    EXPECT_EQ(flight.command(kArm, {1}), kRejected) << reason;
+    EXPECT_EQ(flight.command(kArmCommand, {1}), kRejected) << reason;
     EXPECT_TRUE(flight.was_said("Arming denied")) << reason;
     EXPECT_TRUE(flight.was_said(reason)) << reason;
-    EXPECT_EQ(flight.command(kArm, {1, 21196}), kAccepted) << "without checks";
+    EXPECT_EQ(flight.command(kArmCommand, {1, 21196}), kAccepted) << "without checks";
   }
 }
 
 TEST(Commander, DisarmsInTheAirOnlyByForceAndCanArmAgain) {
   Flight flight;
   flight.take_off();
-  EXPECT_EQ(flight.command(kArm, {0}), kRejected);
+  EXPECT_EQ(flight.command(kArmCommand, {0}), kRejected);
   EXPECT_TRUE(flight.was_said("Disarming denied"));
   EXPECT_TRUE(flight.is_armed());
-  EXPECT_EQ(flight.command(kArm, {0, 21196}), kAccepted);
+  EXPECT_EQ(flight.command(kArmCommand, {0, 21196}), kAccepted);
   EXPECT_EQ(flight.setpoint.mask, uav::kRotorSpeeds);
   EXPECT_EQ(flight.setpoint.rotor_speeds_rad_s, std::vector<double>(4, 0.0));
   flight.run(3.0);
   EXPECT_EQ(flight.body.p_WB.z, 0.0) << "it fell";
-  EXPECT_EQ(flight.command(kArm, {1}), kAccepted);
+  EXPECT_EQ(flight.command(kArmCommand, {1}), kAccepted);
 }
 
 TEST(Commander, DisarmsIfItDoesNotTakeOff) {
   Flight flight({.parameters = {{"COM_DISARM_PRFLT", 3.0}}});
   flight.boot();
-  flight.command(kArm, {1});
+  flight.command(kArmCommand, {1});
   flight.run(2.9);
   EXPECT_TRUE(flight.is_armed());
   flight.run(0.2);
   EXPECT_FALSE(flight.is_armed());
   Flight patient({.parameters = {{"COM_DISARM_PRFLT", -1.0}}});
   patient.boot();
-  patient.command(kArm, {1});
+  patient.command(kArmCommand, {1});
   patient.run(20.0);
   EXPECT_TRUE(patient.is_armed());
 }
@@ -95,9 +95,9 @@ TEST(Commander, TakesModesByBothMessages) {
 TEST(Commander, IgnoresWhatIsForOthers) {
   Flight flight;
   flight.boot();
-  EXPECT_EQ(flight.command(kArm, {1}, 2), -1);
+  EXPECT_EQ(flight.command(kArmCommand, {1}, 2), -1);
   EXPECT_FALSE(flight.is_armed());
-  EXPECT_EQ(flight.command(kArm, {1}, 0), kAccepted) << "for all";
+  EXPECT_EQ(flight.command(kArmCommand, {1}, 0), kAccepted) << "for all";
   const auto to_component = [&](int component) {
     return flight.acknowledged(Message("COMMAND_LONG")
                                    .set("target_system", 1)
@@ -124,7 +124,7 @@ TEST(Commander, AcknowledgesToTheSender) {
 TEST(Commander, TakesHomeWhereItArmsAndByCommand) {
   Flight flight({}, {3.0, 4.0, 0.0});
   flight.boot();
-  flight.command(kArm, {1});
+  flight.command(kArmCommand, {1});
   flight.run(0.01);
   ASSERT_NE(flight.last("HOME_POSITION"), nullptr);
   EXPECT_NEAR(flight.last("HOME_POSITION")->number("x"), 0.0, 1e-3) << "of the local frame";

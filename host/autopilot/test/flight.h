@@ -25,7 +25,8 @@ using mavlink::Message;
 
 inline constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 inline constexpr long kAccepted = 0, kRejected = 1, kDenied = 2, kUnsupported = 3, kFailed = 4;
-inline constexpr int kArm = 400, kTakeOff = 22, kLand = 21, kReturn = 20, kSetMode = 176;
+inline constexpr int kArmCommand = 400, kTakeOffCommand = 22, kLandCommand = 21,
+                     kReturnCommand = 20, kSetMode = 176;
 inline constexpr int kPositionOnly = 0x0DF8, kVelocityOnly = 0x0DC7;
 
 /// A vehicle over flat ground at z = 0 with the built-in controller, and its companion.
@@ -99,8 +100,8 @@ class Flight {
   /// Boots, arms, takes off to 2.5 m and holds.
   void take_off() {
     boot();
-    ASSERT_EQ(command(kArm, {1}), kAccepted);
-    ASSERT_EQ(command(kTakeOff), kAccepted);
+    ASSERT_EQ(command(kArmCommand, {1}), kAccepted);
+    ASSERT_EQ(command(kTakeOffCommand), kAccepted);
     ASSERT_TRUE(run_until([&] { return shown_mode() == "AUTO.LOITER"; }, 10.0));
   }
   void boot() { run(1.0); }

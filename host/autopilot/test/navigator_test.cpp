@@ -10,8 +10,8 @@ double horizontal(const uav::Vec3& v) {
 TEST(Navigator, TakesOffToTheParametersHeightAndHolds) {
   Flight flight({.parameters = {{"MIS_TAKEOFF_ALT", 4.0}}});
   flight.boot();
-  flight.command(kArm, {1});
-  flight.command(kTakeOff);
+  flight.command(kArmCommand, {1});
+  flight.command(kTakeOffCommand);
   double fastest = 0.0;
   flight.run(1.0);
   EXPECT_EQ(flight.shown_mode(), "AUTO.TAKEOFF");
@@ -31,16 +31,16 @@ TEST(Navigator, TakesOffToTheAltitudeOfTheCommand) {
   for (const bool arms_later : {false, true}) {
     Flight flight;
     flight.boot();
-    if (!arms_later) flight.command(kArm, {1});
-    EXPECT_EQ(flight.command(kTakeOff, {0, 0, 0, kNone, kNone, kNone, 6.0}), kAccepted);
-    if (arms_later) flight.command(kArm, {1});
+    if (!arms_later) flight.command(kArmCommand, {1});
+    EXPECT_EQ(flight.command(kTakeOffCommand, {0, 0, 0, kNone, kNone, kNone, 6.0}), kAccepted);
+    if (arms_later) flight.command(kArmCommand, {1});
     flight.run(10.0);
     EXPECT_NEAR(flight.body.p_WB.z, 6.0, 0.32);
   }
   Flight flight;
   flight.boot();
-  flight.command(kArm, {1});
-  flight.command(kTakeOff, {0, 0, 0, kNone, kNone, kNone, -3.0});
+  flight.command(kArmCommand, {1});
+  flight.command(kTakeOffCommand, {0, 0, 0, kNone, kNone, kNone, -3.0});
   flight.run(8.0);
   EXPECT_NEAR(flight.body.p_WB.z, 2.5, 0.32) << "below the vehicle: MIS_TAKEOFF_ALT";
 }
@@ -49,7 +49,7 @@ TEST(Navigator, ATakeOffInTheAirDoesNotDescend) {
   Flight flight({.parameters = {{"MIS_TAKEOFF_ALT", 8.0}}});
   flight.take_off();
   flight.run(3.0);
-  EXPECT_EQ(flight.command(kTakeOff, {0, 0, 0, kNone, kNone, kNone, 2.0}), kAccepted);
+  EXPECT_EQ(flight.command(kTakeOffCommand, {0, 0, 0, kNone, kNone, kNone, 2.0}), kAccepted);
   flight.run(3.0);
   EXPECT_NEAR(flight.body.p_WB.z, 8.0, 0.3);
 }
@@ -57,8 +57,8 @@ TEST(Navigator, ATakeOffInTheAirDoesNotDescend) {
 TEST(Navigator, ACommandIsStrongerThanTheEndOfAMode) {
   Flight flight;
   flight.boot();
-  flight.command(kArm, {1});
-  flight.command(kTakeOff);
+  flight.command(kArmCommand, {1});
+  flight.command(kTakeOffCommand);
   // At each step it could come to its end.
   flight.run_until(
       [&] {
@@ -77,7 +77,7 @@ TEST(Navigator, ACommandIsStrongerThanTheEndOfAMode) {
 TEST(Navigator, LandsAndDisarms) {
   Flight flight({.parameters = {{"COM_DISARM_LAND", 1.0}}});
   flight.take_off();
-  EXPECT_EQ(flight.command(kLand), kAccepted);
+  EXPECT_EQ(flight.command(kLandCommand), kAccepted);
   EXPECT_EQ(flight.shown_mode(), "AUTO.LAND");
   flight.run(1.5);
   EXPECT_EQ(flight.last("EXTENDED_SYS_STATE")->integer("landed_state"), 4);
@@ -89,13 +89,13 @@ TEST(Navigator, LandsAndDisarms) {
   ASSERT_TRUE(flight.run_until([&] { return !flight.is_armed(); }, 10.0));
   EXPECT_NEAR(to_seconds(flight.now - landed_at), 1.0, 0.05);
   EXPECT_EQ(flight.shown_mode(), "AUTO.LOITER");
-  EXPECT_EQ(flight.command(kArm, {1}), kAccepted) << "it can fly again";
+  EXPECT_EQ(flight.command(kArmCommand, {1}), kAccepted) << "it can fly again";
 }
 
 TEST(Navigator, LandsFastFromHighUp) {
   Flight flight({.parameters = {{"MIS_TAKEOFF_ALT", 12.0}}});
   flight.take_off();
-  flight.command(kLand);
+  flight.command(kLandCommand);
   flight.run(2.0);
   EXPECT_NEAR(flight.body.v_WB.z, -1.5, 0.1) << "MPC_Z_V_AUTO_DN";
 }
@@ -104,7 +104,7 @@ TEST(Navigator, LandsOnAPlatformThatMoves) {
   Flight flight;
   flight.take_off();
   flight.carried_m_s = {0.8, 0.0, 0.0};
-  flight.command(kLand);
+  flight.command(kLandCommand);
   EXPECT_TRUE(flight.run_until([&] { return flight.was_said("landed"); }, 10.0));
 }
 
@@ -135,7 +135,7 @@ TEST(Navigator, ReturnsHomeAndLands) {
   flight.mode(6);
   flight.stream(away, 8.0);
   ASSERT_NEAR(flight.body.p_WB.y, 14.0, 0.2);
-  EXPECT_EQ(flight.command(kReturn), kAccepted);
+  EXPECT_EQ(flight.command(kReturnCommand), kAccepted);
   EXPECT_EQ(flight.shown_mode(), "AUTO.RTL");
   double highest = 0.0, lowest_away = 100.0, fastest = 0.0;
   flight.run_until([&] {
@@ -156,7 +156,7 @@ TEST(Navigator, ReturnsHomeAndLands) {
 TEST(Navigator, ReturnsWithoutAClimbIfItIsNear) {
   Flight flight;
   flight.take_off();
-  flight.command(kReturn);
+  flight.command(kReturnCommand);
   double highest = 0.0;
   flight.run_until([&] {
     highest = std::max(highest, flight.body.p_WB.z);
@@ -184,7 +184,7 @@ TEST(Navigator, KnowsWhereNorthIs) {
 TEST(Navigator, DoesNotRiseFromTheGroundInHold) {
   Flight flight;
   flight.boot();
-  flight.command(kArm, {1});
+  flight.command(kArmCommand, {1});
   flight.run(5.0);
   EXPECT_EQ(flight.body.p_WB.z, 0.0);
   EXPECT_EQ(flight.setpoint.mask, uav::kRotorSpeeds);
@@ -198,7 +198,7 @@ TEST(Navigator, TakesOffAndLandsInOffboard) {
     const Message up = target(kVelocityOnly).set("vz", -climb_m_s);
     flight.stream(up, 1.2);
     ASSERT_EQ(flight.mode(6), kAccepted);
-    ASSERT_EQ(flight.command(kArm, {1}), kAccepted);
+    ASSERT_EQ(flight.command(kArmCommand, {1}), kAccepted);
     flight.stream(up, 1.5 / climb_m_s);
     EXPECT_NEAR(flight.body.p_WB.z, 1.5, 0.4);
     const double height = flight.body.p_WB.z;
