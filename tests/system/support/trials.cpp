@@ -66,6 +66,10 @@ std::filesystem::path write_shipped_scenario(const std::filesystem::path& folder
   const std::filesystem::path sources = TETHER_SOURCE_DIR "/data/scenarios";
   const auto file = folder / "scenarios" / (name + ".toml");
   std::filesystem::create_directory(file.parent_path());
+  // Which its program may be in.
+  if (!std::filesystem::exists(folder / "programs"))
+    std::filesystem::create_directory_symlink(TETHER_SOURCE_DIR "/data/programs",
+                                              folder / "programs");
   write_text(file, substituted(read_text(sources / (name + ".toml")), substitutions));
   return file;
 }
