@@ -57,7 +57,8 @@ TEST(Offboard, LostSetPointsAreAFailsafe) {
     ASSERT_EQ(flight.mode(6), kAccepted);
     flight.stream(position_target(0, 0, 0), 1.0);
     const SimTime until = flight.now;
-    ASSERT_TRUE(flight.run_until([&] { return flight.shown_mode() == mode; }, 5.0)) << mode;
+    ASSERT_TRUE(flight.run_until([&, wanted = mode] { return flight.shown_mode() == wanted; }, 5.0))
+        << mode;
     EXPECT_NEAR(to_seconds(flight.now - until), 0.7, 0.06);
     EXPECT_TRUE(flight.was_said("no set-points"));
     EXPECT_EQ(flight.last("HEARTBEAT")->integer("system_status"), 5) << "critical";

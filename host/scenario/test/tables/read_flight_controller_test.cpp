@@ -79,7 +79,7 @@ TEST(ReadFlightController, RefusesBadValuesWhereTheyAre) {
             "has no effect beside 'flight_controller'"},
            {"setpoint_timeout_ms = 3\nflight_controller = \"built-in\"", 2, "COM_OF_LOSS_T"},
            {"flight_controller = \"built-in\"\non_setpoint_loss = \"land\"", 3, "no effect"}}) {
-    const Error error = bad_file_error([&] { read_one(text); });
+    const Error error = bad_file_error([text = text] { read_one(text); });
     EXPECT_EQ(error.where().line, line) << text;
     EXPECT_THAT(std::string(error.what()), HasSubstr(reason)) << text;
   }
