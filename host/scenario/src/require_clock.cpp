@@ -9,10 +9,11 @@ void require_clock(const Scenario& scenario, const Condition& condition) {
   for (std::size_t i = 0; i < scenario.uavs.size(); ++i) {
     const UavSetup& uav = scenario.uavs[i];
     const auto& target = computer_of(condition, i).target;
-    if (uav.sut.is_as_is && target && target->emulator)
+    const bool is_emulated = target && (target->emulator || !target->program_folder.empty());
+    if (uav.sut.is_as_is && is_emulated)
       throw Error(ErrorCode::kBadFile, scenario.where("as_is"),
                   fmt::format("the SUT of UAV \"{}\" flies as it is, which does not work in the "
-                              "emulator of condition \"{}\". Use clock = \"cpu\".",
+                              "emulator of condition \"{}\". Use a target without one.",
                               uav.placement.name, condition.name))
           .about(uav.placement.name);
     const computer::ClockKind clock = computer_of(condition, i).clock.kind;

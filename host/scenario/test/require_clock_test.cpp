@@ -26,5 +26,20 @@ TEST(RequireClock, RefusesAllButTheWallClockForAConcurrentProgram) {
   EXPECT_NO_THROW(require_clock(scenario, condition));
 }
 
+TEST(RequireClock, RefusesEmulatorsForAProgramAsItIs) {
+  Scenario scenario;
+  scenario.file = "/s/square.toml";
+  scenario.uavs.resize(1);
+  scenario.uavs[0].placement.name = "uav1";
+  scenario.uavs[0].sut.is_as_is = true;
+  Condition condition;
+  condition.computers[0].clock.kind = computer::ClockKind::kCpu;
+  EXPECT_NO_THROW(require_clock(scenario, condition));
+  condition.computers[0].target.emplace();
+  EXPECT_NO_THROW(require_clock(scenario, condition));
+  condition.computers[0].target->program_folder = "/opt/arm";
+  expect_refusal(0, "uav1", [&] { require_clock(scenario, condition); });
+}
+
 }  // namespace
 }  // namespace tether::scenario
