@@ -66,11 +66,14 @@ std::vector<campaign::Doubt> doubts_of(const coordinator::SutReport& sut,
   const double waiting_s = to_seconds(looks.waiting);
   const bool counts = clock.counts_waiting();
   const double stretched_s = waiting_s * (counts ? clock.factor : std::max(1.0, clock.factor));
-  const bool is_known = has_waits || sees_waits;
-  if (stretched_s > least_s && (counts || waiting_s > to_seconds(kLeastSeenWait)) && !is_known)
+  // A side that sees waits looks at them from time to time, which takes some milliseconds each.
+  const double least_wait_s = sees_waits ? kLooksAfterOthers * least_s : least_s;
+  if (stretched_s > least_wait_s && (counts || waiting_s > to_seconds(kLeastSeenWait)) &&
+      !has_waits)
     doubts.push_back(counts ? campaign::Doubt{Kind::kStretchedWait, sut.uav, waiting_s}
                             : campaign::Doubt{Kind::kUnseenWait, sut.uav, stretched_s});
-  else if ((counts ? waiting_s : stretched_s) > to_seconds(kLeastSlightWait) && !is_known)
+  else if ((counts ? waiting_s : stretched_s) > to_seconds(kLeastSlightWait) && !has_waits &&
+           !sees_waits)
     doubts.push_back({Kind::kSlightWait, sut.uav, std::min(1.0, stretched_s / et_s)});
   if (const double on_disk_s = to_seconds(looks.on_disk);
       on_disk_s > std::max(to_seconds(kLeastDiskDoubt), kDoubtfulDiskShare * et_s) && !has_waits &&

@@ -22,11 +22,11 @@
 namespace tether::as_is {
 namespace {
 
-// How long a thread waits in real time before it looks again whether all others wait, first and
-// later. Whoever begins to wait last looks by itself; only waits that are not seen need this.
-constexpr Duration kFirstSlice = std::chrono::milliseconds(1);
-constexpr Duration kLongestSlice = std::chrono::milliseconds(4);
-constexpr Duration kShortestSlice = std::chrono::microseconds(20);
+// How long a thread waits in real time before it looks at the time again. Who begins to wait last
+// looks by itself whether all wait; the leader's thread looks again, for waits that are not seen.
+constexpr Duration kShortestSlice = std::chrono::microseconds(500);
+constexpr Duration kLongestSlice = std::chrono::milliseconds(5);
+constexpr Duration kLongestUnwoken = std::chrono::milliseconds(1);
 // Of a wait without a deadline; then it begins again.
 constexpr Duration kForEver = std::chrono::hours(1);
 
@@ -71,7 +71,9 @@ void Agent::start() {
     say(vehicle.failure().message);
     ::_exit(3);
   }
-  instance_.store(new Agent(std::move(*vehicle), *source), std::memory_order_release);
+  auto* const agent = new Agent(std::move(*vehicle), *source);
+  agent->process_ = ::getpid();
+  instance_.store(agent, std::memory_order_release);
 }
 
 // The run is over, or cannot go on: so is the program. It says nothing that the coordinator does
@@ -117,6 +119,11 @@ class Agent::Unpaid {
   Unpaid(const Unpaid&) = delete;
   Unpaid& operator=(const Unpaid&) = delete;
 
+  /// So far: others that read the time do not see it.
+  void settle() {
+    pause();
+    go_on();
+  }
   void go_on() { since_ = os::read_clock(CLOCK_THREAD_CPUTIME_ID); }
   void pause() { source_->leave_out(os::read_clock(CLOCK_THREAD_CPUTIME_ID) - since_); }
 
@@ -125,13 +132,25 @@ class Agent::Unpaid {
   Duration since_{0};
 };
 
-// Until the deadline, if another thread computes all that time.
-Duration Agent::slice(std::optional<ExecTime> deadline, int looks) const {
-  const Duration longest = looks == 0 ? kFirstSlice : kLongestSlice;
-  if (!deadline) return longest;
-  const auto left = static_cast<std::int64_t>(static_cast<double>((*deadline - now()).count()) /
-                                              std::max(1.0, factor_));
-  return std::clamp(Duration(left), kShortestSlice, longest);
+/// Of one wait: ET when it looked last, and how long it waited since.
+struct Agent::Patience {
+  ExecTime seen{};
+  Duration slice = kShortestSlice;
+};
+
+// While ET goes on, another thread computes: until the deadline, if it does so all the time. While
+// it stands, longer each time.
+Duration Agent::slice(std::optional<ExecTime> deadline, Patience& patience) const {
+  const ExecTime at = now();
+  const auto real = [&](Duration of_et) {
+    return Duration(
+        static_cast<std::int64_t>(static_cast<double>(of_et.count()) / std::max(1.0, factor_)));
+  };
+  const bool stands = real(at - patience.seen) < patience.slice / 2;
+  patience.seen = at;
+  patience.slice = stands ? std::min(kLongestSlice, 2 * patience.slice) : kShortestSlice;
+  if (stands || !deadline) return patience.slice;
+  return std::clamp(real(*deadline - at), kShortestSlice, kLongestSlice);
 }
 
 // Whether ET went on, or a message came. Nobody may be past its deadline: that one runs first.
@@ -173,36 +192,55 @@ void Agent::leave(std::list<Wait>::iterator wait) {
   waits_.erase(wait);
 }
 
+// With several threads, the leader's thread looks from time to time whether all wait.
 bool Agent::wait(std::optional<ExecTime> deadline, const std::function<bool()>& is_ready,
                  const Block& block) {
   Unpaid unpaid(*source_);
   const auto own = enter(deadline);
+  const bool is_alone = !Threads::are_several();
+  Patience patience{.seen = now()};
   bool ready = false;
-  for (int looks = 0; !(ready = is_ready()) && !(deadline && now() >= *deadline);)
-    if (!lead(unpaid)) block(slice(deadline, looks++), own->wake);
+  bool leads = true;
+  while (!(ready = is_ready()) && !(deadline && now() >= *deadline)) {
+    unpaid.settle();
+    if (leads && lead(unpaid)) continue;
+    if (leads && !is_alone) call_leader();
+    leads = is_alone;
+    block(slice(deadline, patience), own->wake);
+  }
   leave(own);
   return ready;
 }
 
 bool Agent::wait_for_thread(ExecTime deadline, const std::function<bool(Duration)>& block) {
+  Unpaid unpaid(*source_);
+  if (block(Duration(0))) return true;
+  const auto own = enter(deadline);
+  call_leader();
+  Patience patience{.seen = now()};
+  bool is_given = false;
+  while (!is_given && now() < deadline) {
+    unpaid.settle();
+    // Nobody can wake it at its deadline.
+    is_given = block(std::min(kLongestUnwoken, slice(deadline, patience)));
+  }
+  leave(own);
+  return is_given;
+}
+
+void Agent::call_leader() {
   constexpr std::uint64_t kOnce = 1;
   std::call_once(leader_begins_, [this] {
     leader_wake_ = ::eventfd(0, EFD_CLOEXEC);
     std::thread([this] { lead_for_others(); }).detach();
   });
-  const Unpaid unpaid(*source_);
-  if (block(Duration(0))) return true;
-  const auto own = enter(deadline);
   static_cast<void>(TETHER_REAL(write)(leader_wake_, &kOnce, sizeof kOnce));
-  bool is_given = false;
-  while (!is_given && now() < deadline) is_given = block(std::min(kFirstSlice, slice(deadline, 0)));
-  leave(own);
-  return is_given;
 }
 
 // As long as somebody waits; then until somebody does.
 void Agent::lead_for_others() {
   const Inside inside;
+  Patience patience;
   for (;;) {
     bool is_any = false;
     {
@@ -210,14 +248,24 @@ void Agent::lead_for_others() {
       is_any = !waits_.empty();
     }
     Unpaid unpaid(*source_);
-    if (!lead(unpaid)) {
-      pollfd fd{leader_wake_, POLLIN, 0};
-      const timespec time = to_timespec(kFirstSlice);
-      TETHER_REAL(ppoll)(&fd, 1, is_any ? &time : nullptr, nullptr);
-      std::uint64_t count = 0;
-      if (fd.revents != 0) static_cast<void>(TETHER_REAL(read)(leader_wake_, &count, sizeof count));
+    if (lead(unpaid)) {
+      patience = {};
+      continue;
     }
+    pollfd fd{leader_wake_, POLLIN, 0};
+    const timespec time = to_timespec(patience.slice);
+    unpaid.settle();
+    TETHER_REAL(ppoll)(&fd, 1, is_any ? &time : nullptr, nullptr);
+    patience.slice = std::min(kLongestSlice, 2 * patience.slice);
+    if (fd.revents == 0) continue;
+    std::uint64_t count = 0;
+    static_cast<void>(TETHER_REAL(read)(leader_wake_, &count, sizeof count));
+    patience = {};
   }
+}
+
+bool Agent::is_here() const {
+  return ::getpid() == process_;
 }
 
 void Agent::sleep_until(ExecTime deadline) {

@@ -10,6 +10,8 @@
 #include <mutex>
 #include <optional>
 
+#include <sys/types.h>
+
 #include <tether/base/time.h>
 #include <tether/client/simulated_vehicle.h>
 
@@ -62,6 +64,8 @@ class Agent {
   /// The program uses something that this library does not bring to ET: says so, once for each.
   void tell_gap(const char* what);
 
+  /// Whether the caller is in this process, and not in a child that shares its memory (vfork).
+  bool is_here() const;
   /// The program ends with this code.
   void finish(int exit_code);
 
@@ -71,12 +75,14 @@ class Agent {
   class Unpaid;
   /// Takes the next message, or lets ET reach that instant.
   bool receive_until(std::optional<ExecTime> until);
+  struct Patience;
   bool lead(Unpaid& unpaid);
   [[noreturn]] void lead_for_others();
   std::list<Wait>::iterator enter(std::optional<ExecTime> deadline);
   void leave(std::list<Wait>::iterator wait);
   void wake_due();
-  Duration slice(std::optional<ExecTime> deadline, int looks) const;
+  Duration slice(std::optional<ExecTime> deadline, Patience& patience) const;
+  void call_leader();
   [[noreturn]] static void end(const Failure& failure);
 
   static std::atomic<Agent*> instance_;
@@ -90,7 +96,8 @@ class Agent {
   std::mutex waits_mutex_;
   std::list<Wait> waits_;
   std::once_flag leader_begins_;
-  int leader_wake_ = -1;  // an eventfd: somebody waits for another thread
+  int leader_wake_ = -1;  // an eventfd: somebody begins to wait
+  pid_t process_ = 0;
 };
 
 }  // namespace tether::as_is

@@ -7,7 +7,7 @@ namespace tether::as_is {
 namespace {
 
 constexpr std::int64_t kNsPerSecond = 1'000'000'000;
-constexpr std::int64_t kMost_s = 1'000'000'000;  // 31 years
+constexpr std::int64_t kMost_s = 4'000'000'000;  // 127 years: also dates are within
 
 std::int64_t epoch_s() {
   static const std::int64_t kEpoch = [] {

@@ -3,10 +3,24 @@
 #include "agent.h"
 #include "real.h"
 
+#include <cerrno>
+
 /// What the functions in place of the C library's have in common.
 #define TETHER_IN_PLACE extern "C" __attribute__((visibility("default")))
 
 namespace tether::as_is {
+
+/// Keeps errno, which calls that succeed leave alone.
+class KeepErrno {
+ public:
+  KeepErrno() : kept_(errno) {}
+  ~KeepErrno() { errno = kept_; }
+  KeepErrno(const KeepErrno&) = delete;
+  KeepErrno& operator=(const KeepErrno&) = delete;
+
+ private:
+  int kept_;
+};
 
 /// The agent, if the calling thread is the program's and the process is under test; else nullptr:
 /// then the real function is what is wanted.

@@ -28,15 +28,17 @@ std::optional<ExecTime> deadline_of(const Agent& agent, std::optional<Duration> 
 /// timeout.
 template <class Look>
 int wait_for(Agent& agent, std::optional<Duration> timeout, Look look, const Agent::Block& block) {
+  const int kept = errno;
   const Inside inside;
   int result = look();
-  if (result != 0) return result;
-  if (timeout == Duration(0)) {
+  if (result == 0 && timeout == Duration(0)) {
     if (agent.port().is_any()) agent.take_arrived();
-    return look();
+    result = look();
+  } else if (result == 0) {
+    agent.wait(
+        deadline_of(agent, timeout), [&] { return (result = look()) != 0; }, block);
   }
-  agent.wait(
-      deadline_of(agent, timeout), [&] { return (result = look()) != 0; }, block);
+  if (result >= 0) errno = kept;
   return result;
 }
 

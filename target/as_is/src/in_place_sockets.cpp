@@ -4,6 +4,7 @@
 #include "in_place.h"
 
 #include <cerrno>
+#include <cstdarg>
 #include <optional>
 #include <vector>
 
@@ -38,6 +39,7 @@ std::optional<Duration> timeout_of(int socket, int flags) {
 /// `take()`: the real read, without waiting. −1 with EAGAIN: nothing is there.
 template <class Take>
 ssize_t read_when_ready(Agent& agent, int socket, int flags, Take take) {
+  const int kept = errno;
   const Inside inside;
   ssize_t result = take();
   const auto is_empty = [&] { return result < 0 && (errno == EAGAIN || errno == EWOULDBLOCK); };
@@ -47,18 +49,24 @@ ssize_t read_when_ready(Agent& agent, int socket, int flags, Take take) {
     agent.take_arrived();
     return take();
   }
+  bool is_timed_out = true;
+  int error = 0;
   const auto deadline = timeout ? std::optional(agent.now() + *timeout) : std::nullopt;
   agent.wait(
       deadline,
       [&] {
         result = take();
-        return !is_empty();
+        error = errno;
+        is_timed_out = is_empty();
+        return !is_timed_out;
       },
       [&](Duration slice, int wake) {
         pollfd fds[] = {{socket, POLLIN, 0}, {wake, POLLIN, 0}};
         const timespec time = to_timespec(slice);
         TETHER_REAL(ppoll)(fds, 2, &time, nullptr);
       });
+  // After a wait, errno is that of anything.
+  errno = result < 0 && is_timed_out ? EAGAIN : result < 0 ? error : kept;
   return result;
 }
 
@@ -142,7 +150,8 @@ TETHER_IN_PLACE int getpeername(int socket, sockaddr* __restrict address,
 }
 
 TETHER_IN_PLACE int close(int fd) {
-  if (Agent* const agent = tether::as_is::agent()) agent->port().forget(fd);
+  if (Agent* const agent = tether::as_is::agent(); agent != nullptr && agent->is_here())
+    agent->port().forget(fd);
   return TETHER_REAL(close)(fd);
 }
 
@@ -179,6 +188,59 @@ TETHER_IN_PLACE ssize_t recvmsg(int socket, msghdr* message, int flags) {
   if (got >= 0)
     agent->port().believe(static_cast<sockaddr*>(message->msg_name), &message->msg_namelen);
   return got;
+}
+
+// One message at a time, which the caller must expect.
+TETHER_IN_PLACE int recvmmsg(int socket, mmsghdr* messages, unsigned count, int flags,
+                             timespec* timeout) {
+  if (agent_of(socket) == nullptr)
+    return TETHER_REAL(recvmmsg)(socket, messages, count, flags, timeout);
+  if (count == 0) return 0;
+  const ssize_t got = recvmsg(socket, &messages[0].msg_hdr, flags & ~MSG_WAITFORONE);
+  if (got < 0) return -1;
+  messages[0].msg_len = static_cast<unsigned>(got);
+  return 1;
+}
+
+TETHER_IN_PLACE int dup(int fd) {
+  const int copy = TETHER_REAL(dup)(fd);
+  if (Agent* const agent = agent_of(fd)) agent->port().copy(fd, copy);
+  return copy;
+}
+
+TETHER_IN_PLACE int fcntl64(int fd, int command, ...) {
+  va_list list;
+  va_start(list, command);
+  const long argument = va_arg(list, long);
+  va_end(list);
+  const int result = TETHER_REAL(fcntl64)(fd, command, argument);
+  if (command != F_DUPFD && command != F_DUPFD_CLOEXEC) return result;
+  if (Agent* const agent = agent_of(fd)) agent->port().copy(fd, result);
+  return result;
+}
+
+TETHER_IN_PLACE int fcntl(int fd, int command, ...) {
+  va_list list;
+  va_start(list, command);
+  const long argument = va_arg(list, long);
+  va_end(list);
+  return fcntl64(fd, command, argument);
+}
+
+TETHER_IN_PLACE int dup2(int fd, int copy) {
+  Agent* const agent = tether::as_is::agent();
+  if (agent != nullptr && copy != fd) agent->port().forget(copy);
+  const int result = TETHER_REAL(dup2)(fd, copy);
+  if (agent != nullptr && copy != fd) agent->port().copy(fd, result);
+  return result;
+}
+
+TETHER_IN_PLACE int dup3(int fd, int copy, int flags) {
+  Agent* const agent = tether::as_is::agent();
+  if (agent != nullptr) agent->port().forget(copy);
+  const int result = TETHER_REAL(dup3)(fd, copy, flags);
+  if (agent != nullptr) agent->port().copy(fd, result);
+  return result;
 }
 
 TETHER_IN_PLACE ssize_t __recv_chk(int socket, void* bytes, size_t size, size_t, int flags) {

@@ -5,6 +5,7 @@
 
 #include <cerrno>
 #include <cstdarg>
+#include <cstring>
 #include <memory>
 
 #include <linux/futex.h>
@@ -139,6 +140,20 @@ TETHER_IN_PLACE int pthread_cond_clockwait(pthread_cond_t* condition, pthread_mu
   return wait_for_condition(*agent, condition, mutex, clock, until);
 }
 
+TETHER_IN_PLACE int pthread_mutex_clocklock(pthread_mutex_t* mutex, clockid_t clock,
+                                            const timespec* until) {
+  Agent* const agent = tether::as_is::agent();
+  if (agent == nullptr) return TETHER_REAL(pthread_mutex_clocklock)(mutex, clock, until);
+  return wait_until(*agent, clock, until, [&](const timespec* end) {
+    return TETHER_REAL(pthread_mutex_clocklock)(mutex, CLOCK_REALTIME, end);
+  });
+}
+
+TETHER_IN_PLACE int pthread_mutex_timedlock(pthread_mutex_t* __restrict mutex,
+                                            const timespec* __restrict until) {
+  return pthread_mutex_clocklock(mutex, CLOCK_REALTIME, until);
+}
+
 TETHER_IN_PLACE int sem_timedwait(sem_t* __restrict semaphore, const timespec* __restrict until) {
   Agent* const agent = tether::as_is::agent();
   if (agent == nullptr) return TETHER_REAL(sem_timedwait)(semaphore, until);
@@ -160,13 +175,15 @@ TETHER_IN_PLACE long syscall(long number, ...) {
   Agent* const agent = number == SYS_futex ? tether::as_is::agent() : nullptr;
   if (agent == nullptr || a[3] == 0 || !is_timed_wait(a[1]))
     return TETHER_REAL(syscall)(number, a[0], a[1], a[2], a[3], a[4], a[5]);
-  return wait_for_futex(*agent, a[0], a[1], a[2], *reinterpret_cast<const timespec*>(a[3]), a[5]);
+  const timespec* timeout = nullptr;
+  std::memcpy(&timeout, &a[3], sizeof timeout);
+  return wait_for_futex(*agent, a[0], a[1], a[2], *timeout, a[5]);
 }
 
 TETHER_IN_PLACE void _exit(int code) {
   if (Agent* const agent = tether::as_is::agent()) {
     const Inside inside;
-    agent->finish(code);
+    if (agent->is_here()) agent->finish(code);
   }
   TETHER_REAL(_exit)(code);
   __builtin_unreachable();

@@ -15,6 +15,7 @@ int sleep_for(Agent& agent, const timespec* duration) {
   const auto wanted = duration_of(*duration);
   if (!wanted) return EINVAL;
   const Inside inside;
+  const KeepErrno keep;
   agent.sleep_until(agent.now() + *wanted);
   return 0;
 }
@@ -28,6 +29,7 @@ TETHER_IN_PLACE int clock_gettime(clockid_t clock, timespec* time) {
   Agent* const agent = tether::as_is::agent();
   if (agent == nullptr || !is_ours(clock)) return TETHER_REAL(clock_gettime)(clock, time);
   const Inside inside;
+  const KeepErrno keep;
   *time = shown(clock, agent->now());
   return 0;
 }
@@ -36,6 +38,7 @@ TETHER_IN_PLACE int gettimeofday(timeval* __restrict time, void* __restrict zone
   Agent* const agent = tether::as_is::agent();
   if (agent == nullptr) return TETHER_REAL(gettimeofday)(time, zone);
   const Inside inside;
+  const KeepErrno keep;
   const timespec now = shown(CLOCK_REALTIME, agent->now());
   *time = {now.tv_sec, now.tv_nsec / 1000};
   return 0;
@@ -45,6 +48,7 @@ TETHER_IN_PLACE time_t time(time_t* out) {
   Agent* const agent = tether::as_is::agent();
   if (agent == nullptr) return TETHER_REAL(time)(out);
   const Inside inside;
+  const KeepErrno keep;
   const time_t now = shown(CLOCK_REALTIME, agent->now()).tv_sec;
   if (out != nullptr) *out = now;
   return now;
@@ -53,8 +57,10 @@ TETHER_IN_PLACE time_t time(time_t* out) {
 TETHER_IN_PLACE int nanosleep(const timespec* duration, timespec* left) {
   Agent* const agent = tether::as_is::agent();
   if (agent == nullptr) return TETHER_REAL(nanosleep)(duration, left);
-  errno = sleep_for(*agent, duration);
-  return errno == 0 ? 0 : -1;
+  const int wrong = sleep_for(*agent, duration);
+  if (wrong == 0) return 0;
+  errno = wrong;
+  return -1;
 }
 
 TETHER_IN_PLACE int clock_nanosleep(clockid_t clock, int flags, const timespec* until,
@@ -65,6 +71,7 @@ TETHER_IN_PLACE int clock_nanosleep(clockid_t clock, int flags, const timespec* 
   if ((flags & TIMER_ABSTIME) == 0) return sleep_for(*agent, until);
   if (!duration_of(*until)) return EINVAL;
   const Inside inside;
+  const KeepErrno keep;
   agent->sleep_until(et_of(clock, *until));
   return 0;
 }

@@ -16,6 +16,7 @@ constexpr std::uint16_t kCompanions[] = {14540, 14550};
 constexpr std::uint16_t kControllers[] = {14580, 18570};
 constexpr std::uint16_t kController = kControllers[0];
 constexpr std::uint16_t kUnbound = 1;  // ours, but not bound by the program
+constexpr std::uint16_t kCopy = 2;     // another descriptor of one that is ours
 
 std::uint16_t port_of(const sockaddr* address, socklen_t size) {
   if (address == nullptr) return 0;
@@ -82,10 +83,16 @@ void Port::forget(int socket) {
   if (bound_[static_cast<std::size_t>(socket)].exchange(0) != 0) --count_;
 }
 
+// It has one queue, so what is delivered to the first one is there for both.
+void Port::copy(int socket, int copy) {
+  if (!is_ours(socket) || copy < 0 || static_cast<std::size_t>(copy) >= kSockets) return;
+  if (bound_[static_cast<std::size_t>(copy)].exchange(kCopy) == 0) ++count_;
+}
+
 bool Port::believed(int socket, sockaddr* address, socklen_t* size) const {
   if (!is_ours(socket)) return false;
   const std::uint16_t port = bound_[static_cast<std::size_t>(socket)].load();
-  if (port == kUnbound) return false;
+  if (port == kUnbound || port == kCopy) return false;
   if (TETHER_REAL(getsockname)(socket, address, size) == 0) set_port(address, port);
   return true;
 }
@@ -93,7 +100,7 @@ bool Port::believed(int socket, sockaddr* address, socklen_t* size) const {
 // A socket that is not bound yet has no address to send to; the kernel gives it one.
 void Port::deliver(std::span<const std::uint8_t> bytes) {
   for (std::size_t socket = 0; socket < kSockets; ++socket) {
-    if (bound_[socket].load() == 0) continue;
+    if (bound_[socket].load() == 0 || bound_[socket].load() == kCopy) continue;
     sockaddr_storage to{};
     socklen_t size = sizeof to;
     auto* const address = reinterpret_cast<sockaddr*>(&to);

@@ -34,6 +34,8 @@ class Port {
   /// The program sends from this socket to a flight controller, or has connected it.
   void adopt(int socket);
   void forget(int socket);
+  /// A descriptor of the same socket, if that is ours.
+  void copy(int socket, int copy);
   /// The address that the program believes it has bound; false: it is not ours.
   bool believed(int socket, sockaddr* address, socklen_t* size) const;
 

@@ -38,7 +38,7 @@ bool is_under_test() {
 
 void on_exit_of_program(int code, void*) {
   const Inside inside;
-  if (Agent* const agent = Agent::get()) agent->finish(code);
+  if (Agent* const agent = Agent::get(); agent != nullptr && agent->is_here()) agent->finish(code);
 }
 
 __attribute__((constructor)) void start_process() {

@@ -1,16 +1,18 @@
 #include "threads.h"
 
-#include <charconv>
+#include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <optional>
+#include <sstream>
 #include <string>
-#include <utility>
 
 #include <dirent.h>
 #include <fcntl.h>
 #include <sys/syscall.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 namespace tether::as_is {
@@ -57,13 +59,44 @@ std::optional<unsigned long> turns_of_others() {
   return turns;
 }
 
+/// Whether a child of this process, or of those, runs or could. Of those that wait, nothing is
+/// known of for what.
+bool is_child_running(const std::string& task_folder, int depth) {
+  constexpr int kDeepest = 8;
+  DIR* const folder = ::opendir(task_folder.c_str());
+  if (folder == nullptr) return false;
+  bool is_running = false;
+  while (const dirent* entry = ::readdir(folder)) {
+    if (entry->d_name[0] == '.' || is_running) continue;
+    char text[4096];
+    const std::string file = task_folder + "/" + entry->d_name + "/children";
+    if (!read_file(file.c_str(), text, sizeof text)) continue;
+    std::istringstream children(text);
+    for (std::string child; children >> child && !is_running;) {
+      char stat[512];
+      const bool is_there = read_file(("/proc/" + child + "/stat").c_str(), stat, sizeof stat);
+      const char* after_name = is_there ? std::strrchr(stat, ')') : nullptr;
+      is_running = after_name != nullptr && !is_waiting(after_name[2]);
+      if (depth < kDeepest)
+        is_running = is_running || is_child_running("/proc/" + child + "/task", depth + 1);
+    }
+  }
+  ::closedir(folder);
+  return is_running;
+}
+
+bool has_children() {
+  siginfo_t info{};
+  return ::waitid(P_ALL, 0, &info, WEXITED | WNOHANG | WNOWAIT) == 0 || errno != ECHILD;
+}
+
 }  // namespace
 
 std::atomic<int> Threads::count_ = 1;
 std::atomic<int> Threads::outside_ = 0;
 
 bool Threads::are_others_waiting() {
-  if (outside_ > 0) return false;
+  if (outside_ > 0 || (has_children() && is_child_running("/proc/self/task", 0))) return false;
   if (!are_several()) return true;
   const auto first = turns_of_others();
   return first && turns_of_others() == first;

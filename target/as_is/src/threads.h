@@ -10,8 +10,8 @@ namespace tether::as_is {
 /// The threads of this process: whether all but the calling one wait.
 class Threads {
  public:
-  /// Whether no other thread of the program runs, or could. Looks at the kernel's states of all of
-  /// them, twice, unless there is one only.
+  /// Whether no other thread of the program, and no child, runs or could. Looks at the kernel's
+  /// states of all of them, twice, unless there is one only.
   bool are_others_waiting();
 
   /// While one lives, the calling thread waits for somebody outside, in real time: ET does not go

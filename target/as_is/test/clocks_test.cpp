@@ -32,6 +32,8 @@ TEST(AsIsClocks, DurationsThatAreNoneAreRefused) {
   EXPECT_FALSE(duration_of({-1, 0}));
   EXPECT_FALSE(duration_of({0, 1'000'000'000}));
   EXPECT_FALSE(duration_of({0, -1}));
+  // A date is one as well: since 1970.
+  EXPECT_EQ(duration_of({2'000'000'000, 0}), std::chrono::seconds(2'000'000'000));
   EXPECT_EQ(duration_of({2, 5}), std::chrono::seconds(2) + Duration(5));
 }
 

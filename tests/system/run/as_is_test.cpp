@@ -129,6 +129,34 @@ TEST_F(AsIs, AForkedChildHasTheMachinesClock) {
   EXPECT_NE(said().find("True"), std::string::npos) << said();
 }
 
+// What a program may do with its own threads, processes, descriptors and errors.
+TEST_F(AsIs, UsualThingsOfProgramsGoOnToWork) {
+  const Output output = fly_python(
+      "import errno, os, socket, subprocess, threading, time\n"
+      "def daemon():\n"
+      "    while True: time.sleep(0.001)\n"
+      "threading.Thread(target=daemon, daemon=True).start()\n"
+      "try: subprocess.run(['there-is-no-such-program'])\n"
+      "except FileNotFoundError: pass\n"
+      "s = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)\n"
+      "s.bind(('', 14540))\n"
+      "assert s.getsockname()[1] == 14540\n"
+      "copy = os.dup(s.fileno())\n"
+      "s.setblocking(True)\n"
+      "assert len(os.read(copy, 1000)) > 10\n"
+      "s.setblocking(False)\n"
+      "try:\n"
+      "    while True: s.recv(1000)\n"
+      "except BlockingIOError: pass\n"
+      "before = time.monotonic()\n"
+      "subprocess.run(['python3', '-c', 'sum(range(3000000))'])\n"
+      "assert 0.02 < time.monotonic() - before < 2.0\n"
+      "time.sleep(0.5)\n"
+      "print('all went well')\n");
+  EXPECT_EQ(output.code, 0) << output.err << said();
+  EXPECT_NE(said().find("all went well"), std::string::npos) << said();
+}
+
 // The kernel's own timers are not brought to ET, and the user is told.
 TEST_F(AsIs, WhatIsNotCoveredIsTold) {
   const Output output = fly_python("import signal, time\nsignal.alarm(100)\ntime.sleep(0.2)\n");
