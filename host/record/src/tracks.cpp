@@ -82,8 +82,8 @@ Anchor AnchorTrack::at(SimTime instant) const {
     now = moved(X_WO_, state_at(path_, instant - SimTime{})) * (inverse(X_WO_) * X_WA_);
   if (const auto X_WB = uav_ ? uav_->at(instant) : std::nullopt) now = *X_WB * uav::Pose{p_BA_, {}};
   Anchor anchor = start_;
-  std::ranges::copy(std::initializer_list{now.p.x, now.p.y, now.p.z}, anchor.p_WA_m);
-  std::ranges::copy(std::initializer_list{now.q.w, now.q.x, now.q.y, now.q.z}, anchor.q_WA);
+  std::ranges::copy(std::initializer_list<double>{now.p.x, now.p.y, now.p.z}, anchor.p_WA_m);
+  std::ranges::copy(std::initializer_list<double>{now.q.w, now.q.x, now.q.y, now.q.z}, anchor.q_WA);
   return anchor;
 }
 
