@@ -1,6 +1,7 @@
 #include "model_parts.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include <fmt/format.h>
 
@@ -79,6 +80,7 @@ Resolved resolve_world(const Scenario& scenario, const Condition& condition, std
   resolve_energy(scenario, condition, world, warn);
   resolved.timings = resolve_sensors(scenario, condition, world, warn);
   vary_mountings(scenario.variations, resolved.varied, world);
+  std::ranges::copy(start_yaws(scenario, seed), std::back_inserter(resolved.varied));
   return resolved;
 }
 

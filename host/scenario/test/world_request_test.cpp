@@ -22,6 +22,11 @@ TEST(WorldRequest, PlacesTheUavsWithAStartYawFromItsSpreadBySeed) {
     ASSERT_EQ(request.uavs.size(), 2u);
     EXPECT_EQ(request.uavs[0].yaw_rad, world_request(scenario, seed).uavs[0].yaw_rad);
     EXPECT_EQ(request.uavs[1].name, "uav2");
+    const std::vector<Varied> drawn = start_yaws(scenario, seed);
+    ASSERT_EQ(drawn.size(), 1u);
+    EXPECT_EQ(drawn[0].what, "the start yaw of uav1");
+    EXPECT_NEAR(drawn[0].value,
+                deg_from_rad(request.uavs[0].yaw_rad - scenario.uavs[0].placement.yaw_rad), 1e-9);
     EXPECT_EQ(request.uavs[1].yaw_rad, scenario.uavs[1].placement.yaw_rad);
     least = std::min(least, deg_from_rad(request.uavs[0].yaw_rad));
     greatest = std::max(greatest, deg_from_rad(request.uavs[0].yaw_rad));

@@ -208,6 +208,8 @@ std::string slug(std::string_view name);
 Scenario load_scenario(const std::filesystem::path& file, const std::vector<Setting>& settings = {},
                        const std::string& from = "--set ");
 
+/// The start yaws that a seed draws.
+std::vector<Varied> start_yaws(const Scenario& scenario, std::uint64_t seed);
 /// The world request of a trial: each UAV's start yaw is drawn from its spread, keyed by the seed.
 sim::WorldRequest world_request(const Scenario& scenario, std::uint64_t seed);
 
