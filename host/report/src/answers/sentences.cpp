@@ -164,6 +164,8 @@ std::string doubts_text(const ConditionVerdict& condition) {
   std::string text;
   if (!condition.varied.empty() && condition.flown > 1)
     text += fmt::format(" The flights differ in {}.", joined_with_and(condition.varied));
+  else if (condition.distinct > 1)
+    text += " They all begin alike, and differ only in noise and measured times.";
   if (!condition.left_out.empty()) text += left_out_text(condition);
   for (const FlightsInDoubt& doubt : condition.doubts)
     if (doubt.largest.is_of_unseen_time()
