@@ -13,7 +13,7 @@ struct Words {
   std::string_view heading;
 };
 constexpr std::array<Words, kConsequences.size()> kWords = {
-    {{"doubtful_start", "doubtful start"},
+    {{"doubtful_setting", "doubtful setting"},
      {"missing", "missing from the world"},
      {"looks_different", "looks different"},
      {"behaves_differently", "moves, collides or measures differently"},

@@ -206,6 +206,27 @@ void check_rate(const LayeredSensor& sensor, const uav::SensorTiming& timing,
                       problem, ms(world.step))});
 }
 
+/// Of a sensor that is meant to fail, the answer says so; of another, it is a mistake.
+void warn_of_losses(const sim::Sensor& sensor, const std::string& uav,
+                    const sim::WarningSink& warn) {
+  constexpr double kMany = 0.5;
+  const auto warn_of = [&](double probability, std::string_view key) {
+    if (warn && probability >= kMany)
+      warn({Consequence::kDoubtfulSetting,
+            {},
+            fmt::format("sensor '{}' of UAV '{}'", sensor.name, uav),
+            fmt::format("loses {:.3g} % of its measurements ({} = {:.6g})", 100.0 * probability,
+                        key, probability)});
+  };
+  std::visit(
+      [&](const auto& model) {
+        if constexpr (requires { model.dropout_probability; })
+          warn_of(model.dropout_probability, "dropout_probability");
+      },
+      sensor.model);
+  warn_of(sensor.driver.lost_probability, "lost_probability");
+}
+
 const UavSetup& setup_of(const Scenario& scenario, const std::string& uav) {
   for (const UavSetup& setup : scenario.uavs) {
     if (setup.placement.name == uav) return setup;
@@ -229,6 +250,7 @@ std::vector<uav::SensorTiming> resolve(const Scenario& scenario, const Condition
   for (LayeredSensor& sensor : sensors) {
     timings.push_back(sensor.finish());
     check_rate(sensor, timings.back(), uav.name, world, warn);
+    warn_of_losses(sensor.sensor(), uav.name, warn);
   }
   return timings;
 }

@@ -90,6 +90,16 @@ TEST_F(ResolveSensors, WarnsOfARateThatTheStepMakesUnsteady) {
   EXPECT_THAT(warnings_, testing::Not(testing::Contains(HasSubstr("varies"))));
 }
 
+TEST_F(ResolveSensors, WarnsOfASensorThatLosesHalfOfItsMeasurements) {
+  lay("good.toml", "[sensors.range]\nkind = \"range\"\ndropout_probability = 0.4\n");
+  (void)resolve();
+  EXPECT_THAT(warnings_, testing::Not(testing::Contains(HasSubstr("loses"))));
+  lay("dead.toml", "[sensors.range]\nkind = \"range\"\ndropout_probability = 1\n");
+  (void)resolve();
+  EXPECT_THAT(warnings_, testing::Contains(AllOf(HasSubstr("sensor 'range' of UAV 'uav1'"),
+                                                 HasSubstr("loses 100 % of its measurements"))));
+}
+
 TEST_F(ResolveSensors, TakesTheScenariosStepElseTheWorlds) {
   world_.step = milliseconds(4);
   world_.step_from = "world";

@@ -70,7 +70,7 @@ std::vector<Answer> sufficient_factors(const std::vector<Verdict>& points) {
 }
 
 bool is_left_out(const Warning& warning) {
-  return warning.can_change_verdict && warning.consequence != Consequence::kDoubtfulStart;
+  return warning.can_change_verdict && warning.consequence != Consequence::kDoubtfulSetting;
 }
 
 }  // namespace tether::report
