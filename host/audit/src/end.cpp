@@ -225,6 +225,8 @@ void check_et(const record::Record& record, const Boundaries& grid, const Footer
           {5, uav, 0, footer.st_at_end,
            fmt::format("ended with ET {}, but its last reply was at ET {}", ns(et), ns(reply.at))});
     const bool is_expelled = std::ranges::count(footer.expelled, uav) > 0;
+    if ((reply.finished || is_expelled) && std::ranges::count(footer.computing, uav) > 0)
+      report.add({5, uav, 0, footer.st_at_end, "computed at the end, but had left the run"});
     if (!reply.finished && !is_expelled && wide(footer.st_at_end) > grid.at_or_before(wide(et)))
       report.add({4, uav, 0, footer.st_at_end,
                   fmt::format("ST ended at {}, ahead of ET {} of a running SUT",

@@ -32,6 +32,7 @@ TEST(AuditOfTheEnd, FindsWhatTheMessagesContradict) {
            {"an expelled SUT that has finished",
             {0},
             [](Record& r) { r.footer->expelled = {"uav0"}; }},
+           {"computing after the finish", {5}, [](Record& r) { r.footer->computing = {"uav0"}; }},
            {"a clearance that nobody measured",
             {0},
             [](Record& r) {

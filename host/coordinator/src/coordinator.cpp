@@ -419,6 +419,10 @@ RunReport Coordinator::Impl::close_run() {
   footer.st_at_end = st();
   footer.wall = report.wall;
   for (const SutReport& sut : report.suts) footer.et_at_end.push_back(sut.et);
+  for (const Session& session : sessions_)
+    if (const Timeline& time = time_of(session);
+        time.et() && time.facts().loads_one_core() && time.is_computing())
+      footer.computing.push_back(session.uav_name);
   if (hooks_.read_target) footer.target_after = hooks_.read_target();
   if (report.end == RunEnd::kRecordFailed) return report;
   try {

@@ -199,6 +199,7 @@ inline Footer footer() {
   footer.largest_overshoot = Duration(321);
   footer.clearances = {{"a", 0.25, st_ms(40), "room"}, {"b", 0.0, st_ms(0), "floor"}};
   footer.expelled = {"b"};
+  footer.computing = {"a"};
   footer.target_after = {{"temperature_mc", "82500"}};
   return footer;
 }

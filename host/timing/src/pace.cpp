@@ -21,12 +21,14 @@ double quantile(std::vector<double> values, double share) {
 /// What happened between two images of one camera.
 struct Intervals {
   std::optional<double> offered_hz{};
+  std::size_t images = 0;
   std::optional<ExecTime> previous;
   double cost_s = 0.0, waited_s = 0.0;  ///< since the previous image
   std::vector<double> between_s, costs_s;
   double all_costs_s = 0.0, all_waited_s = 0.0;  ///< of the images in `costs_s`
 
   void take_image(ExecTime at) {
+    ++images;
     if (previous) {
       between_s.push_back(to_seconds(at - *previous));
       costs_s.push_back(cost_s);
@@ -36,7 +38,31 @@ struct Intervals {
     previous = at;
     cost_s = waited_s = 0.0;
   }
+  /// The run ended while the newest image was computed: known is how long that takes at least,
+  /// which says something only if no other took longer.
+  void end(ExecTime at) {
+    if (previous && (costs_s.empty() || cost_s > std::ranges::max(costs_s))) {
+      take_image(at);
+      --images;
+    }
+  }
 };
+
+/// What the SUT computed after its last call, if it still did so when the run ended.
+void add_open_call(const record::Record& record, const record::SutInfo& sut, Run& run) {
+  if (!record.footer || std::ranges::count(record.footer->computing, sut.uav) == 0) return;
+  const auto& suts = record.header.suts;
+  const auto index = static_cast<std::size_t>(
+      std::ranges::find(suts, sut.uav, &record::SutInfo::uav) - suts.begin());
+  if (index >= record.footer->et_at_end.size()) return;
+  ExecTime resumed{};
+  for (const auto& logged : record.interactions)
+    if (logged.message.uav == sut.uav) resumed = logged.message.reply_at;
+  const std::string previous = run.calls.empty() ? "start" : run.calls.back().call;
+  const Duration computing = record.footer->et_at_end[index] - resumed;
+  if (computing > Duration(0))
+    run.calls.push_back({"end", {{link::stage_between(previous, "end"), computing}}});
+}
 
 // The same image read again, or none, is no image.
 bool is_image(const record::Interaction& entry, std::map<std::string, std::uint64_t>& newest) {
@@ -76,12 +102,18 @@ std::map<std::string, Intervals> intervals_of(const record::Record& record, cons
     if (camera != cameras.end() && is_image(entry, newest))
       camera->second.take_image(entry.reply_at);
   }
+  if (call == run.calls.end()) return cameras;
+  for (auto& [name, intervals] : cameras) {
+    intervals.cost_s += to_seconds(call->stages.front().computing);
+    intervals.end(resumed + call->stages.front().computing);
+  }
   return cameras;
 }
 
 Pace pace_of(const record::Record& record, const record::SutInfo& sut) {
   Timing timing;
   timing.runs = {run_of(record, sut)};
+  add_open_call(record, sut, timing.runs.front());
   Pace pace{.uav = sut.uav, .seed = record.header.seed, .stages = stage_rows(timing)};
   const auto shares = [&](const record::SutInfo& other) {
     return other.board == sut.board && other.pinned_core == sut.pinned_core;
@@ -97,10 +129,9 @@ Pace pace_of(const record::Record& record, const record::SutInfo& sut) {
     pace.programs = static_cast<std::size_t>(programs);
   }
   for (const auto& [name, intervals] : intervals_of(record, sut.uav, timing.runs.front())) {
-    const std::size_t images = intervals.between_s.size() + 1;
-    if (intervals.between_s.empty() || images <= pace.images) continue;
+    if (intervals.between_s.empty() || intervals.images <= pace.images) continue;
     pace.camera = name;
-    pace.images = images;
+    pace.images = intervals.images;
     const double between_s = quantile(intervals.between_s, 0.5);
     pace.read_hz = between_s > 0.0 ? 1.0 / between_s : 0.0;
     pace.median_s = quantile(intervals.costs_s, 0.5);

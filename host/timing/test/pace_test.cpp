@@ -55,6 +55,23 @@ TEST(Pace, IsThatOfTheImages) {
   EXPECT_EQ(pace.stages.front().stage, "detect");
 }
 
+TEST(Pace, ContainsWhatWasComputedWhenTheRunEnded) {
+  record::Record record = record_of_reads();
+  const ExecTime last = record.interactions.back().message.reply_at;
+  record.footer.emplace().et_at_end = {last + std::chrono::seconds(5)};
+  record.footer->computing = {"uav1"};
+  const Pace pace = *pace_of(record);
+  EXPECT_EQ(pace.stages.front().stage, "camera to end");
+  EXPECT_NEAR(pace.stages.front().worst_s, 5.0, 1e-9);
+  EXPECT_EQ(pace.images, 21u);
+  record.interactions.resize(1);  // then the only image takes 5 s at least
+  EXPECT_NEAR(
+      pace_of(record)->p95_s,
+      to_seconds(*record.footer->et_at_end.data() - record.interactions.back().message.reply_at),
+      1e-9);
+  EXPECT_TRUE(pace_of(record)->is_too_slow_for_camera());
+}
+
 TEST(Pace, HasTheSpeedOfAllPrograms) {
   record::Record record = record_of_reads();
   record.header.machine = "here";

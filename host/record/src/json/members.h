@@ -475,6 +475,7 @@ void members(auto& io, Maybe<Footer> auto& m) {
   io("largest_grid_error_ns", m.largest_grid_error);
   if (io.has("clearances", !m.clearances.empty())) io.list("clearances", m.clearances);
   if (io.has("expelled", !m.expelled.empty())) io.list("expelled", m.expelled);
+  if (io.has("computing", !m.computing.empty())) io.list("computing", m.computing);
   if (io.has("topics", !m.topics.empty())) io.list("topics", m.topics);
   if (!io.has("stops", m.stops > 0)) return;
   io("stops", m.stops);

@@ -91,15 +91,17 @@ struct Costs {
   double own_s = 0.0, other_s = 0.0;
 };
 
-/// What an image costs under both or, without a camera, the largest stage of the first.
+/// What an image costs under both or, without a camera, the largest stage of the first that the
+/// other has, too.
 std::optional<Costs> costs_of(const Pace& one, const Pace& other) {
   if (!one.camera.empty() && one.camera == other.camera)
     return Costs{"an image costs", one.median_s, other.median_s};
-  if (one.stages.empty()) return std::nullopt;
-  const timing::StageRow& stage = one.stages.front();
-  const auto same = std::ranges::find(other.stages, stage.stage, &timing::StageRow::stage);
-  if (same == other.stages.end()) return std::nullopt;
-  return Costs{fmt::format("“{}” takes", stage.stage), stage.median_s, same->median_s};
+  for (const timing::StageRow& stage : one.stages) {
+    const auto same = std::ranges::find(other.stages, stage.stage, &timing::StageRow::stage);
+    if (same != other.stages.end())
+      return Costs{fmt::format("“{}” takes", stage.stage), stage.median_s, same->median_s};
+  }
+  return std::nullopt;
 }
 
 bool is_faster(const Compared& other, const Compared& missed) {
@@ -179,7 +181,7 @@ std::string known_cause(const campaign::TrialResult& flight, const std::optional
 /// runs, the program decides, and may do so by the time that is left.
 std::string possible_cause(const campaign::TrialResult& flight, const std::optional<Pace>& pace) {
   for (const Warning& warning : flight.warnings)
-    if (warning.consequence == Consequence::kDoubtfulStart)
+    if (warning.consequence == Consequence::kDoubtfulSetting)
       return warning.subject + " " + warning.message;
   if (const judge::ClauseVerdict* clause = of_forgotten_task(flight)) return clause->limited_by;
   if (pace && pace->messages > 0 && pace->messages_arrived == 0)

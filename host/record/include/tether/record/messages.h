@@ -314,6 +314,9 @@ struct Footer {
   std::vector<std::string> expelled{};  ///< UAVs whose SUTs lost their sessions in the run
   /// Of each topic with messages, filled in by the recorder. Empty in records of Tether 0.1.0.
   std::vector<TopicCount> topics{};
+  /// UAVs whose SUTs computed when the run ended, from their last reply to their ET at the end.
+  /// Without concurrent SUTs and those on modelled boards that others share.
+  std::vector<std::string> computing{};
 };
 
 }  // namespace tether::record
