@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <tether/base/counted.h>
 #include <tether/campaign/campaign_folder.h>
 #include <tether/campaign/refuse_folder.h>
 #include <tether/os/temporary_folder.h>
@@ -110,10 +111,11 @@ CampaignManifest manifest_in(const fs::path& folder, const std::string& name) {
   return then;
 }
 
-[[noreturn]] void refuse_results(const fs::path& folder, std::size_t finished, std::size_t all) {
-  refuse_folder(folder, fmt::format("already contains {} of {} trials. Continue with --resume, or "
-                                    "choose another folder.",
-                                    finished, all));
+// Of how many, is not known for tether size: it plans more than it flies.
+[[noreturn]] void refuse_results(const fs::path& folder, std::size_t finished) {
+  refuse_folder(folder, fmt::format("already contains {}. Continue with --resume, or choose "
+                                    "another folder.",
+                                    counted(finished, "result")));
 }
 
 // Otherwise a mistyped name would fly everything again. What was killed early left its lock.
@@ -144,7 +146,7 @@ void require_folder(const fs::path& folder, const scenario::Campaign& campaign, 
   const std::vector<TrialPlan> plans = plan_trials(campaign, folder);
   const auto finished =
       std::ranges::count_if(plans, [](const TrialPlan& plan) { return has_result(plan.folder); });
-  if (finished > 0) refuse_results(folder, static_cast<std::size_t>(finished), plans.size());
+  if (finished > 0) refuse_results(folder, static_cast<std::size_t>(finished));
 }
 
 CampaignFolder::CampaignFolder(fs::path folder, const scenario::Campaign& campaign,
@@ -158,8 +160,7 @@ CampaignFolder::CampaignFolder(fs::path folder, const scenario::Campaign& campai
     if (mode == OpenMode::kReplace) remove_existing();
   }
   sort_trials(campaign);
-  if (mode == OpenMode::kFresh && !finished_.empty())
-    refuse_results(folder_, finished_.size(), finished_.size() + missing_.size());
+  if (mode == OpenMode::kFresh && !finished_.empty()) refuse_results(folder_, finished_.size());
   write_manifest(manifest, mode);
   // A report of fewer trials would lie beside the new ones.
   std::error_code ignored;

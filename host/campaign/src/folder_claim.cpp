@@ -162,7 +162,11 @@ FolderClaim::FolderClaim(const fs::path& folder, By by) {
   require_place(folder);
   std::error_code failed;
   fs::create_directories(folder, failed);
-  if (failed) fail(folder, "cannot be made", failed.value());
+  if (failed == std::errc::no_space_on_device || failed == std::errc::io_error)
+    fail(folder, "cannot be made", failed.value());
+  if (failed)
+    refuse_folder(folder, fmt::format("cannot be made: {}. Choose another folder with --out.",
+                                      failed.message()));
   const auto lock_campaign = [&](int how, const char* who) {
     const fs::path path = folder / kLockFile;
     os::FileDescriptor file = open_own(path, O_RDWR | O_CREAT);

@@ -74,7 +74,7 @@ TEST_F(Folder, IsRefusedBeforeAnyFileOfATrialIsRead) {
   open(OpenMode::kFresh);
   require_folder(out_, campaign_, OpenMode::kFresh);
   keep(0);
-  expect_refused_at_once(out_, OpenMode::kFresh, "already contains 1 of 9 trials");
+  expect_refused_at_once(out_, OpenMode::kFresh, "already contains 1 result.");
   require_folder(out_, campaign_, OpenMode::kResume);
   campaign_.name = "other";
   expect_refused_at_once(out_, OpenMode::kReplace, "contains the campaign");
@@ -108,7 +108,7 @@ TEST_F(Folder, RefusesToStartOverResults) {
   open(OpenMode::kFresh);
   EXPECT_NO_THROW(open(OpenMode::kFresh)) << "nothing was run yet";
   keep(0);
-  expect_refused(OpenMode::kFresh, "1 of 9");
+  expect_refused(OpenMode::kFresh, "1 result.");
 }
 
 TEST_F(Folder, ReplacesResultsOfTheSameCampaignOnly) {
