@@ -114,6 +114,35 @@ TEST(MujocoContactsTest, StopAUavThatFalls) {
   }
 }
 
+// With one point of contact, it rocked for ever, with 0.2 rad/s.
+TEST(MujocoContactsTest, WhatStandsOnAnyFaceOfABoxIsAtRest) {
+  const uav::Vec3 flat{20.0, 20.0, 1.0}, on_edge{1.0, 20.0, 20.0};
+  for (const auto& [size_m, q] : {std::pair{flat, uav::Quat{}},
+                                  {flat, uav::from_rpy(std::numbers::pi, 0.0, 0.4)},
+                                  {on_edge, uav::from_rpy(0.0, std::numbers::pi / 2, 0.0)},
+                                  {on_edge, uav::from_rpy(0.0, -std::numbers::pi / 2, 0.3)}}) {
+    World world = world_with_fall(1.0);
+    world.models.resize(1);
+    world.models[0] = {};
+    world.models[0].name = "floor";
+    world.models[0].is_static = true;
+    world.models[0].links.resize(1);
+    world.models[0].links[0].collisions = {{"box", {}, BoxGeometry{size_m}, 1.0}};
+    world.models[0].X_WM = {{0.0, 0.0, -0.5}, q};
+    world.uavs[0].X_WB.p.z = 0.06;
+    const auto simulator = make_simulator(world);
+    uav::Setpoint off;
+    off.mask = uav::kRotorSpeeds;
+    off.rotor_speeds_rad_s = {0.0, 0.0, 0.0, 0.0};
+    simulator->apply(0, off);
+    simulator->advance_to(SimTime(2s));
+    const uav::BodyState body = simulator->ground_truth(0).body;
+    EXPECT_LT(uav::norm(body.w_WB_B), 1e-3);
+    EXPECT_LT(uav::norm(body.v_WB), 1e-3);
+    EXPECT_NEAR(body.p_WB.z, 0.05, 0.001);
+  }
+}
+
 TEST(MujocoContactsTest, UavsThatCollideNameEachOther) {
   const auto simulator = make_simulator(world_with_two());
   for (std::size_t i = 0; i < 2; ++i) simulator->apply(i, uav::to_setpoint({{1.0, 0.0, 0.0}, 0.0}));
