@@ -97,7 +97,8 @@ class FlightController:
 
     def command(self, command, p1=0.0, p2=0.0, p7=math.nan):
         self.last.pop(ACK, None)
-        self.send(COMMAND, p1, p2, 0.0, 0.0, 0.0, 0.0, p7, command, 1, 1, 0)
+        nan = math.nan  # of a place or a yaw: the present one
+        self.send(COMMAND, p1, p2, 0.0, nan, nan, nan, p7, command, 1, 1, 0)
         while self.last.get(ACK, {}).get("command") != command:
             self.listen(0.02)
         return self.last[ACK]["result"] == 0

@@ -97,6 +97,21 @@ void add_states(pid_t process, std::string_view left_out, ThreadStates& sum) {
   for (const pid_t child : children_of(process)) add_states(child, left_out, sum);
 }
 
+/// The third number of /proc/PID/task/TID/schedstat.
+std::uint64_t turns_in(const std::string& schedstat) {
+  std::istringstream fields(schedstat);
+  std::uint64_t running_ns = 0, waiting_ns = 0, turns = 0;
+  fields >> running_ns >> waiting_ns >> turns;
+  return turns;
+}
+
+void add_turns(pid_t process, std::uint64_t& turns) {
+  const std::string threads = threads_of(process);
+  for (const pid_t thread : numbers_in(threads))
+    turns += turns_in(text_of(threads + std::to_string(thread) + "/schedstat").value_or("0"));
+  for (const pid_t child : children_of(process)) add_turns(child, turns);
+}
+
 Duration used_below(pid_t process) {
   Duration used{0};
   for (const pid_t child : children_of(process))
@@ -186,6 +201,12 @@ ThreadStates thread_states(pid_t process, std::string_view left_out) {
   ThreadStates sum;
   add_states(process, left_out, sum);
   return sum;
+}
+
+std::uint64_t turns_of(pid_t process) {
+  std::uint64_t turns = 0;
+  add_turns(process, turns);
+  return turns;
 }
 
 bool has_connection(pid_t process, std::uint16_t local_port, std::uint16_t remote_port) {

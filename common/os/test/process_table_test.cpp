@@ -111,6 +111,15 @@ TEST_F(ProcessTable, CountsTheThreadsOfAProcessAndItsDescendantsByState) {
   EXPECT_EQ(states.halted, alone.halted + 1);
 }
 
+TEST_F(ProcessTable, CountsTurnsOnlyOfWhatRuns) {
+  const pid_t sleeper = stopped_child([] {});
+  EXPECT_GT(turns_of(sleeper), 0u);
+  EXPECT_EQ(turns_of(sleeper), turns_of(sleeper)) << "it is stopped";
+  const std::uint64_t before = turns_of(getpid());
+  for (int i = 0; i < 3; ++i) usleep(1'000);
+  EXPECT_GE(turns_of(getpid()), before + 3);
+}
+
 TEST_F(ProcessTable, LeavesOutThreadsOfAName) {
   std::array<char, 16> name{};
   pthread_getname_np(pthread_self(), name.data(), name.size());

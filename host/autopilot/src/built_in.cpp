@@ -6,10 +6,10 @@
 #include "navigator.h"
 #include "offboard.h"
 #include "outbox.h"
+#include "set_down.h"
 #include "telemetry.h"
 #include "vehicle.h"
 
-#include <cmath>
 #include <cstring>
 #include <utility>
 
@@ -100,8 +100,8 @@ class BuiltIn : public FlightController {
   Actions step(const Sensed& sensed, const std::vector<Bytes>& received) override {
     const Duration since = has_begun_ ? sensed.at - vehicle_.now : kBuiltInPeriod;
     estimate(sensed);
-    if (!has_begun_ && !settings_.starts_in_air && !stands(sensed.truth))
-      return {.setpoint = setting_down(), .sent = {}};
+    if (!has_begun_ && !settings_.starts_in_air && !set_down_.is_done(sensed.at, sensed.truth))
+      return {.setpoint = SetDown::setpoint(), .sent = {}};
     if (!std::exchange(has_begun_, true)) begin();
     for (const Bytes& bytes : received)
       for (const mavlink::Frame& frame : decoder_.push_datagram(bytes)) on_frame(frame);
@@ -123,23 +123,6 @@ class BuiltIn : public FlightController {
     vehicle_.odometry = std::get<uav::OdometrySample>(*sample);
     vehicle_.estimate = {vehicle_.odometry->p_WS, vehicle_.odometry->q_WS,
                          vehicle_.odometry->v_WS_m_s, vehicle_.odometry->w_WS_rad_s};
-  }
-
-  // A vehicle that starts on the ground is set down there first; meanwhile, its controller boots.
-  // What it stands on may move.
-  static uav::Setpoint setting_down() {
-    constexpr double kSpeed_m_s = 0.3;
-    uav::Setpoint down;
-    down.velocity_m_s.z = -kSpeed_m_s;
-    return down;
-  }
-  bool stands(const uav::BodyState& truth) {
-    constexpr double kStill_m_s = 0.05;
-    constexpr Duration kLeast = std::chrono::milliseconds(500),
-                       kStillFor = std::chrono::milliseconds(200);
-    if (std::abs(truth.v_WB.z) > kStill_m_s || vehicle_.now < SimTime(kLeast))
-      still_since_ = vehicle_.now;
-    return vehicle_.now - still_since_ >= kStillFor;
   }
 
   void begin() {
@@ -200,7 +183,7 @@ class BuiltIn : public FlightController {
 
   BuiltInSettings settings_;
   bool has_begun_ = false;
-  SimTime still_since_{};  // before it has begun
+  SetDown set_down_;  // before it has begun; meanwhile, its controller boots
   Vehicle vehicle_;
   Navigator navigator_;
   Missions missions_;

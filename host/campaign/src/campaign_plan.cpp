@@ -97,7 +97,10 @@ int parallel_trials(const TrialPlan& plan, int jobs) {
   for (std::size_t uav = 0; uav < plan.scenario->uavs.size(); ++uav) {
     const scenario::Computer& own = computer_of(condition, uav);
     const bool is_bound = own.target && own.target->cores > 0;
-    if (own.clock.counts_waiting() || is_bound) return 1;
+    const auto& controller = plan.scenario->uavs[uav].flight_controller;
+    // Of PX4, each instance has the same ports in each trial.
+    const bool has_ports = controller && controller->kind == scenario::FlightController::Kind::kPx4;
+    if (own.clock.counts_waiting() || is_bound || has_ports) return 1;
     load_of_suts += 1.0 / own.clock.factor + kSimulatorLoad * condition.real_time_factor;
   }
   if (jobs == 1) return 1;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include <tether/base/error.h>
 #include <tether/link/messages.h>
 
 namespace tether::coordinator {
@@ -94,7 +95,14 @@ void ControllerLinks::step(std::size_t uav, Stepper& stepper) {
     received.push_back(*message.bytes);
     log(at, uav, true, message, record::kDelivered, at);
   }
-  autopilot::Actions actions = port.controller->step(stepper.sense(uav), received);
+  const autopilot::Sensed sensed = stepper.sense(uav);
+  autopilot::Actions actions = [&] {
+    try {
+      return port.controller->step(sensed, received);
+    } catch (const Error& e) {
+      throw SimulatorFailure(e.what());
+    }
+  }();
   if (actions.setpoint) stepper.fly(uav, *actions.setpoint);
   const SimTime sent_at = at + kAfterBoundary;
   for (autopilot::Bytes& bytes : actions.sent) {

@@ -45,14 +45,17 @@ class ControllerLinks {
                   RunLog& log);
 
   bool has(std::size_t uav) const { return ports_[uav].controller != nullptr; }
+  /// Of the controller's program. @pre has(uav)
+  std::string version(std::size_t uav) const { return ports_[uav].controller->version(); }
   /// The companion sends a message. @pre has(uav); in the order of time
   void send(std::size_t uav, std::uint64_t sequence, SimTime at,
             const std::vector<std::uint8_t>& bytes);
 
   /// The next step of a controller, or arrival at a companion. None: there is no controller.
   std::optional<sync::SutTime> next() const;
-  /// Handles it. Returns the UAV whose companion has got a message, and when. @pre next(), and ST
-  /// is at its boundary
+  /// Handles it. @throws SimulatorFailure if the controller, a part of the vehicle, is lost.
+  /// Returns the UAV whose companion has got a message, and when. @pre next(), and ST is at its
+  /// boundary
   struct Arrival {
     std::size_t uav = 0;
     SimTime at;

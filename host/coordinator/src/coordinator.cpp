@@ -197,7 +197,10 @@ void Coordinator::Impl::start() {
   watchdog_.begin(started_);
   for (const Session& session : sessions_)
     times_.begin(session.uav, session.hello, session.cores, started_);
-  log_.begin(make_header(), times_.repeats());
+  const bool repeats = std::ranges::all_of(options_.uavs, [](const UavOptions& uav) {
+    return !uav.controller || uav.controller->repeats;
+  });
+  log_.begin(make_header(), repeats && times_.repeats());
   running_ = true;
   if (options_.real_time_factor > 0.0)
     pace_.emplace(options_.real_time_factor, std::max(kPaceCredit, 2 * grid().dt()), started_);

@@ -34,6 +34,10 @@ record::CameraInfo describe(const uav::Pose& X_BS, const uav::CameraProperties& 
           .models = camera.models};
 }
 
+std::string text_of(const ControllerOptions& controller, const std::string& version) {
+  return version.empty() ? controller.name : controller.name + " " + version;
+}
+
 std::vector<record::BuildPart> parts_of(const link::Hello& hello) {
   std::vector<record::BuildPart> parts;
   for (const link::BuildPart& part : hello.build)
@@ -152,7 +156,7 @@ record::Header Coordinator::Impl::make_header() const {
       sut.on_setpoint_loss = name(loss->action);
     }
     if (const auto& controller = options_.uavs[session.uav].controller)
-      sut.controller = {.name = controller->name,
+      sut.controller = {.name = text_of(*controller, controllers_.version(session.uav)),
                         .estimate = controller->estimate,
                         .period = controller->period,
                         .link_baud = controller->link_baud,

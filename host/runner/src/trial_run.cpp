@@ -155,7 +155,7 @@ coordinator::RunOptions run_options(const TrialSpec& spec, const TrialInputs& in
     uav.command_latency = spec.scenario.uavs[i].command_latency;
     uav.setpoint_loss = spec.scenario.uavs[i].setpoint_loss;
     if (const auto& controller = spec.scenario.uavs[i].flight_controller)
-      uav.controller = controller_options(*controller, simulator, i);
+      uav.controller = controller_options(*controller, simulator, i, spec.seed, spec.folder);
     const scenario::Computer& own = computer_of(spec.condition, i);
     uav.clock = own.clock;
     uav.computer = own.name;

@@ -45,7 +45,7 @@ TEST(ControllerOptions, DescribesTheControllerAndItsLink) {
   scenario::FlightController controller;
   controller.link_baud = 57'600.0;
   controller.link_latency = Duration(7);
-  const auto options = controller_options(controller, simulator, 1);
+  const auto options = controller_options(controller, simulator, 1, 1, {});
   EXPECT_EQ(options.name, "built-in");
   EXPECT_EQ(options.estimate, "truth") << "it has no odometry";
   EXPECT_EQ(options.period, autopilot::kBuiltInPeriod);
@@ -58,7 +58,8 @@ TEST(ControllerOptions, StepsAtAMultipleOfTheSimulatorsStep) {
   for (const auto& [step_us, period_us] :
        {std::pair{1'000, 4'000}, {3'000, 6'000}, {10'000, 10'000}}) {
     const sim::FakeSimulator simulator(sim::make_fake_world(1, std::chrono::microseconds(step_us)));
-    EXPECT_EQ(controller_options({}, simulator, 0).period, std::chrono::microseconds(period_us));
+    EXPECT_EQ(controller_options({}, simulator, 0, 1, {}).period,
+              std::chrono::microseconds(period_us));
   }
 }
 
@@ -66,14 +67,14 @@ TEST(ControllerOptions, FliesOnAnOdometry) {
   sim::World world = sim::make_fake_world(1);
   world.uavs[0].sensors[1].name = "odometry";
   world.uavs[0].sensors[1].model = sim::OdometryModel{};
-  EXPECT_EQ(controller_options({}, sim::FakeSimulator(world), 0).estimate, "odometry");
+  EXPECT_EQ(controller_options({}, sim::FakeSimulator(world), 0, 1, {}).estimate, "odometry");
 }
 
 TEST(ControllerOptions, IsRefusedWhereTheScenarioHasIt) {
   scenario::FlightController controller;
   controller.at = {"s.toml", 12};
   const Error error =
-      bad_file_error([&] { controller_options(controller, WithoutSetpoints(), 0); });
+      bad_file_error([&] { controller_options(controller, WithoutSetpoints(), 0, 1, {}); });
   EXPECT_EQ(error.where().line, 12);
   EXPECT_EQ(error.subject(), "flight_controller");
   EXPECT_THAT(std::string(error.what()), testing::HasSubstr("embedded one"));

@@ -58,6 +58,9 @@ class Companion {
              .set("param1", p1)
              .set("param2", p2)
              .set("param3", p3)
+             .set("param4", NAN)
+             .set("param5", NAN)
+             .set("param6", NAN)
              .set("param7", p7));
     while (!ack) listen(milliseconds(1));
     if (*ack != 0) fail("command " + std::to_string(id) + " gave " + std::to_string(*ack));

@@ -44,6 +44,10 @@ struct ThreadStates {
 /// Threads named `left_out` are not counted; nor are processes that have ended.
 ThreadStates thread_states(pid_t process, std::string_view left_out = {});
 
+/// How often the threads of a process and of its descendants have got a core so far. The same
+/// number twice, and none runs or waits for a core or the disk in between: they were at rest.
+std::uint64_t turns_of(pid_t process);
+
 /// Whether `process` has a TCP connection between these ports, as its end sees them. False if this
 /// process may not look.
 bool has_connection(pid_t process, std::uint16_t local_port, std::uint16_t remote_port);

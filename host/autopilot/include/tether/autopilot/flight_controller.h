@@ -34,7 +34,8 @@ struct Actions {
   std::vector<Bytes> sent;                  ///< to the companion, in this order
 };
 
-/// Called in the order of time. Deterministic: a function of what it was given. Not thread-safe.
+/// Called in the order of time. The built-in one is deterministic: a function of what it was given.
+/// Not thread-safe.
 class FlightController {
  public:
   virtual ~FlightController() = default;
@@ -42,8 +43,11 @@ class FlightController {
   FlightController& operator=(const FlightController&) = delete;
 
   /// One step: `received` has what has arrived from the companion since the last one, in order.
-  /// Whatever it contains, nothing fails.
+  /// Whatever it contains, nothing fails for it.
+  /// @throws Error of a controller that is a process of its own, and was lost
   virtual Actions step(const Sensed& sensed, const std::vector<Bytes>& received) = 0;
+  /// Of a controller that the user brings; empty: it has none, or is not known.
+  virtual std::string version() const { return ""; }
 
  protected:
   FlightController() = default;

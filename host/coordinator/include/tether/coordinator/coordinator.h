@@ -35,6 +35,9 @@ struct ControllerOptions {
   Duration period{0};        ///< of its steps; > 0, a multiple of the simulator's
   double link_baud = 0.0;    ///< 0: bytes take no time
   Duration link_latency{0};  ///< each way; >= 0
+  /// It answers in the same way in each run. What the user brings may not: load and clocks of the
+  /// machine are among what it tells.
+  bool repeats = true;
 };
 
 /// One UAV of the world and its SUT.

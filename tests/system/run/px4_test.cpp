@@ -1,0 +1,78 @@
+#include "support/trials.h"
+
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+/// Flights by PX4, or by a peer that behaves as it does (programs/fake_px4.cpp).
+namespace tether::system_test {
+namespace {
+
+using testing::HasSubstr;
+
+class Px4Flight : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::filesystem::create_directories(folder_ / "build/bin");
+    std::filesystem::create_directories(folder_ / "build/etc");
+    std::filesystem::copy_file(FAKE_PX4_PROGRAM, folder_ / "build/bin/px4");
+  }
+  /// Returns the exit code.
+  int fly(const std::string& settings, const std::string& out = "out") {
+    write_text(folder_ / "s.toml", R"(name = "companion"
+world = "yard"
+time_limit_s = 40
+[[uav]]
+name = "uav1"
+model = "hummingbird"
+position_m = [0, 0, 0.1]
+flight_controller = { kind = "px4", )" +
+                                       settings + R"( }
+[sut]
+command = [")" COMPANION_SUT_PROGRAM R"("]
+[[condition]]
+name = "host"
+policy = "conservative_barrier"
+clock = "scripted"
+computing_ms = 0.01
+[[metric]]
+kind = "time_required"
+)");
+    const Output output =
+        run(tether({"run", folder_ / "s.toml", "--quiet", "--force", "--out", folder_ / out}));
+    said_ = output.err;
+    if (output.code <= 1) result_ = read_result(folder_ / out);
+    return output.code;
+  }
+
+  TempFolder folder_;
+  nlohmann::json result_;
+  std::string said_;
+};
+
+TEST_F(Px4Flight, ACompanionFliesASquareAndTwoFlightsAreTheSame) {
+  ASSERT_EQ(fly("path = \"build\", boot_s = 5"), 0) << said_;
+  EXPECT_TRUE(result_["audit"]["passed"]) << result_["audit"]["summary"];
+  for (const auto& error_m : result_["suts"][0]["details"]["errors_m"])
+    EXPECT_LT(error_m.get<double>(), 0.2);
+  EXPECT_THAT(read_record(folder_ / "out").header.suts[0].controller->name, "PX4 1.16.0");
+  const auto digest = result_["flight_digest"];
+  ASSERT_EQ(fly("path = \"build\", boot_s = 5", "again"), 0) << said_;
+  EXPECT_EQ(result_["flight_digest"], digest);
+}
+
+TEST_F(Px4Flight, WithoutAControllerThereIsOneLineAndWhatToDo) {
+  EXPECT_EQ(fly("path = \"nowhere\""), 3);
+  EXPECT_THAT(said_, HasSubstr("has no bin/px4. 'path' must be the folder of PX4's build"));
+  EXPECT_EQ(fly("path = \"build\", parameters = { FAKE_END = 3 }"), 3);
+  EXPECT_THAT(said_, HasSubstr("PX4 of UAV 'uav1' exited with code 7: \"ERROR [fake] the end that "
+                               "was asked for\""));
+  EXPECT_EQ(fly("path = \"build\", boot_s = 3, parameters = { FAKE_END = 4 }"), 3);
+  EXPECT_THAT(said_, HasSubstr("exited with code 7"));
+  EXPECT_EQ(fly("boot_s = 3"), 2);
+  EXPECT_THAT(said_, HasSubstr("path"));
+}
+
+}  // namespace
+}  // namespace tether::system_test
