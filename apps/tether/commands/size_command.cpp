@@ -138,6 +138,7 @@ Plan make_plan(const SizeOptions& options) {
 }
 
 int code_of(const report::SizeReport& report) {
+  if (report::has_unseen_time(report)) return exit_code(ErrorCode::kSetup);
   const bool is_good =
       report.boards.empty()
           ? report::is_answered(report)

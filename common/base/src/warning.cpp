@@ -13,7 +13,7 @@ struct Words {
   std::string_view heading;
 };
 constexpr std::array<Words, kConsequences.size()> kWords = {
-    {{"doubtful_setting", "doubtful setting"},
+    {{"doubtful", "doubtful"},
      {"missing", "missing from the world"},
      {"looks_different", "looks different"},
      {"behaves_differently", "moves, collides or measures differently"},

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <set>
 
@@ -43,8 +44,45 @@ TrialResult result_of(const scenario::Scenario& scenario, const scenario::Condit
   return result;
 }
 
+/// A program that says that it has flown by its flight controller: whether it can have done so.
+/// Doubts go to `warnings`.
+void check_companion(const record::Record& record, SutResult& sut, std::vector<Warning>& warnings) {
+  constexpr double kAway_m = 0.2;
+  const auto is_sent = [&](const auto& logged) {
+    const record::AutopilotMessage& m = logged.message;
+    return m.uav == sut.uav && m.to_controller && m.outcome == record::kDelivered &&
+           !m.name.empty();
+  };
+  if (std::ranges::none_of(record.autopilot, is_sent)) {
+    sut.reached_goal = false;
+    sut.outcome = "it sent no message to its flight controller";
+    return;
+  }
+  const record::GroundTruth *first = nullptr, *last = nullptr;
+  bool has_moved = false;
+  for (const auto& logged : record.ground_truth) {
+    if (logged.message.uav != sut.uav) continue;
+    last = &logged.message;
+    if (first == nullptr) first = last;
+    double square_m2 = 0.0;
+    for (std::size_t i = 0; i < 3; ++i)
+      square_m2 += std::pow(last->p_WB_m[i] - first->p_WB_m[i], 2);
+    has_moved |= square_m2 > kAway_m * kAway_m;
+  }
+  const auto doubt = [&](const std::string& what) {
+    warnings.push_back({Consequence::kDoubtful, {}, "UAV '" + sut.uav + "'", what});
+  };
+  if (!has_moved) doubt("never left its start, although its program says that it reached its goal");
+  if (last != nullptr && last->clearance_m && *last->clearance_m > kAway_m)
+    doubt(
+        fmt::format("is in the air ({:.3g} m from anything) when its program ends: what follows "
+                    "was not flown",
+                    *last->clearance_m));
+}
+
 std::vector<SutResult> sut_results(const record::Record& record,
-                                   const std::vector<TaskEnd>& task_ends) {
+                                   const std::vector<TaskEnd>& task_ends,
+                                   std::vector<Warning>& warnings) {
   std::vector<SutResult> suts;
   for (const record::SutInfo& info : record.header.suts) {
     SutResult sut{.uav = info.uav, .sut = info.sut, .clock = info.clock};
@@ -60,6 +98,7 @@ std::vector<SutResult> sut_results(const record::Record& record,
       sut.outcome = end.outcome;
       sut.details = end.details;
     }
+    if (info.controller && sut.reached_goal) check_companion(record, sut, warnings);
     suts.push_back(std::move(sut));
   }
   return suts;
@@ -189,7 +228,7 @@ TrialResult make_result(const scenario::Scenario& scenario, const scenario::Cond
                         const record::Record& record, const std::vector<TaskEnd>& task_ends) {
   TrialResult result = result_of(scenario, condition, record.header.seed);
   result.metrics = compute_metrics(scenario.metrics, record);
-  result.suts = sut_results(record, task_ends);
+  result.suts = sut_results(record, task_ends, result.warnings);
   result.replay = replay_of(record);
   drop_metrics_of_missed_tasks(result, scenario);
   judge_missions(result, scenario, record);

@@ -87,6 +87,8 @@ void fields(auto& io, Maybe<judge::ClauseVerdict> auto& m) {
   io.some("quantity", m.quantity);
   io.some("sensor", m.sensor);
   io.optional("limit", m.limit);
+  io.optional("least_without_program", m.least_without_program);
+  io.optional("median_of_program", m.median_of_program);
 }
 
 void fields(auto& io, Maybe<SutResult> auto& m) {

@@ -284,6 +284,30 @@ class MakeResult : public Result {
   }
 };
 
+// A program whose exit code says that all is well, behind a flight controller.
+TEST_F(MakeResult, ACompanionHasFlownOnlyIfItHasSentSomething) {
+  record::Record record = finished_record();
+  record.header.suts[0].controller.emplace().name = "built-in";
+  TrialResult result = make(record, kReached);
+  EXPECT_EQ(result.outcome, Outcome::kGoalMissed);
+  EXPECT_THAT(result.reason, HasSubstr("it sent no message to its flight controller"));
+  record::AutopilotMessage& sent = record.autopilot.emplace_back().message;
+  sent.uav = "uav1";
+  sent.to_controller = true;
+  sent.outcome = record::kDelivered;
+  sent.name = "HEARTBEAT";
+  result = make(record, kReached);
+  EXPECT_EQ(result.outcome, Outcome::kGoalReached);
+  ASSERT_EQ(result.warnings.size(), 1u);
+  EXPECT_THAT(to_line(result.warnings[0]), HasSubstr("never left its start"));
+  record.ground_truth.push_back(record.ground_truth.back());
+  record.ground_truth.back().message.p_WB_m[2] = 2.0;
+  record.ground_truth.back().message.clearance_m = 1.5;
+  result = make(record, kReached);
+  ASSERT_EQ(result.warnings.size(), 1u);
+  EXPECT_THAT(to_line(result.warnings[0]), HasSubstr("is in the air (1.5 m from anything)"));
+}
+
 TEST_F(MakeResult, TakesEverythingFromTheRecord) {
   const TrialResult result = make(finished_record(), kReached);
   EXPECT_EQ(result.outcome, Outcome::kGoalReached);

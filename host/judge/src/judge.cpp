@@ -166,6 +166,20 @@ class Judge {
     return of;
   }
 
+  // What of reaction times is the program's.
+  static void divide(const std::vector<Event>& events, const mission::Unit& unit,
+                     ClauseVerdict& verdict) {
+    std::vector<double> without_s, program_s;
+    for (const Event& event : events) {
+      if (!event.reaction) return;
+      without_s.push_back(to_seconds(event.reaction->until_had + event.reaction->until_effect));
+      program_s.push_back(to_seconds(event.reaction->until_command));
+    }
+    std::ranges::sort(program_s);
+    verdict.least_without_program = unit.from_si(std::ranges::min(without_s));
+    verdict.median_of_program = unit.from_si(program_s[program_s.size() / 2]);
+  }
+
   void judge_events(const Clause& clause, const Span& span, ClauseVerdict& verdict) {
     const Condition& condition = *clause.condition;
     verdict.quantity = condition.quantity->name;
@@ -180,6 +194,7 @@ class Judge {
     for (std::size_t i = 0; i <= kQuantiles; ++i)
       verdict.quantiles.push_back(condition.unit->from_si(
           in_span.sorted[(i * (events.size() - 1) + kQuantiles - 1) / kQuantiles]));
+    divide(events, *condition.unit, verdict);
     const double shift = shift_of(clause);
     const std::size_t place =
         place_in(margins, Pick::kAtShare, 0, margins.size() - 1, condition.share);

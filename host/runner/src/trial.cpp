@@ -263,7 +263,8 @@ campaign::TrialResult run_trial(const TrialSpec& spec, const FindBackEnd& find_b
   result.versions["tether"] = version();
   result.this_run.started_at = started_at;
   result.this_run.machine = os::describe_machine();
-  result.warnings = warnings.all();
+  const auto all = warnings.all();
+  result.warnings.insert(result.warnings.begin(), all.begin(), all.end());
   result.step = step;
   result.varied = resolved.varied;
   folder.release_room();

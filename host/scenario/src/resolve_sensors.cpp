@@ -212,7 +212,7 @@ void warn_of_losses(const sim::Sensor& sensor, const std::string& uav,
   constexpr double kMany = 0.5;
   const auto warn_of = [&](double probability, std::string_view key) {
     if (warn && probability >= kMany)
-      warn({Consequence::kDoubtfulSetting,
+      warn({Consequence::kDoubtful,
             {},
             fmt::format("sensor '{}' of UAV '{}'", sensor.name, uav),
             fmt::format("loses {:.3g} % of its measurements ({} = {:.6g})", 100.0 * probability,

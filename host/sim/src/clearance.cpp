@@ -202,7 +202,7 @@ void ClearanceMeter::warn_of_starts(const WarningSink& warn) const {
   if (!warn) return;
   for (std::size_t i = 0; i < world_.uavs.size(); ++i) {
     const auto warn_that = [&](const std::string& message) {
-      warn({Consequence::kDoubtfulSetting, {}, "UAV '" + world_.uavs[i].name + "'", message});
+      warn({Consequence::kDoubtful, {}, "UAV '" + world_.uavs[i].name + "'", message});
     };
     const Vec3& p_WB = starts_[i].p;
     const std::string_view floor = shape_overhead(p_WB);

@@ -128,7 +128,7 @@ TEST_P(StartWarningTest, NamesWhatIsWrongWithAStart) {
   world.anchors.push_back({{"box", uav::AnchorShape::kBox, {1, 1, 1}, {1, 1, 1}}, {}});
   std::vector<std::string> warnings;
   ClearanceMeter(world, {}).warn_of_starts([&](const Warning& w) {
-    EXPECT_EQ(w.consequence, Consequence::kDoubtfulSetting);
+    EXPECT_EQ(w.consequence, Consequence::kDoubtful);
     warnings.push_back(to_line(w));
   });
   ASSERT_EQ(warnings.size(), GetParam().said.size());

@@ -127,8 +127,19 @@ bool is_instant(const Compared& one) {
 /// correction for that many comparisons.
 bool reaches_more_often(const ConditionVerdict& a, const ConditionVerdict& b,
                         std::size_t comparisons) {
-  return a.distinct_reached * b.distinct > b.distinct_reached * a.distinct &&
-         chance_of(a, b) * static_cast<double>(comparisons) < kSignificant;
+  ConditionVerdict better = a;
+  better.distinct += a.failed;  // which could all have missed it
+  return better.distinct_reached * b.distinct > b.distinct_reached * better.distinct &&
+         chance_of(better, b) * static_cast<double>(comparisons) < kSignificant;
+}
+
+/// The first limit that `missed` does not meet and the other one always does; empty: there is none.
+std::string met_by(const ConditionVerdict& other, const ConditionVerdict& missed) {
+  for (const auto& [limit, count] : missed.missed)
+    if (std::ranges::find(other.missed, limit, &MissedLimits::value_type::first) ==
+        other.missed.end())
+      return limit;
+  return "";
 }
 
 bool costs_no_more(const Pace& image, const Pace& other) {
@@ -164,6 +175,17 @@ const judge::ClauseVerdict* of_forgotten_task(const campaign::TrialResult& fligh
   return found == flight.clauses.end() ? nullptr : &*found;
 }
 
+/// A missed limit on reaction times that no program could meet; empty: there is none.
+std::string limit_without_program(const campaign::TrialResult& flight) {
+  for (const judge::ClauseVerdict& clause : flight.clauses)
+    if (!clause.met && clause.limit && clause.least_without_program >= clause.limit)
+      return fmt::format(
+          "“{}” allows {:.4g} {}, and at least {:.4g} {} pass without the program, "
+          "until it has an image and until its command has an effect",
+          clause.name, *clause.limit, clause.unit, *clause.least_without_program, clause.unit);
+  return "";
+}
+
 /// What has nothing to do with the speed of a computer; empty: not known.
 std::string known_cause(const campaign::TrialResult& flight, const std::optional<Pace>&) {
   for (const campaign::UavContacts& own : flight.contacts)
@@ -174,14 +196,19 @@ std::string known_cause(const campaign::TrialResult& flight, const std::optional
     if (energy.is_empty() && energy.charge_from < kEmpty)
       return fmt::format("the battery of {} is at {:.2g} % at the start", energy.uav,
                          100.0 * energy.charge_from);
-  return "";
+  for (const judge::ClauseVerdict& clause : flight.clauses)
+    if (!clause.met && clause.margin && clause.decided_at &&
+        *clause.decided_at <= kBeforeAnyProgram)
+      return fmt::format("“{}” is missed at ST {:.3f} s, before a program can act", clause.name,
+                         to_seconds(*clause.decided_at));
+  return limit_without_program(flight);
 }
 
 /// What can be the reason, if the program depends on it; empty: there is nothing. Whether a task
 /// runs, the program decides, and may do so by the time that is left.
 std::string possible_cause(const campaign::TrialResult& flight, const std::optional<Pace>& pace) {
   for (const Warning& warning : flight.warnings)
-    if (warning.consequence == Consequence::kDoubtfulSetting)
+    if (warning.consequence == Consequence::kDoubtful)
       return warning.subject + " " + warning.message;
   if (const judge::ClauseVerdict* clause = of_forgotten_task(flight)) return clause->limited_by;
   if (pace && pace->messages > 0 && pace->messages_arrived == 0)
@@ -200,11 +227,11 @@ std::string limit_below_computing(const campaign::TrialResult& flight,
                              (clause.sensor.empty() || clause.sensor == pace->camera);
     if (!is_of_image || flight.tasks.size() > 1) continue;
     const double unit_s = clause.unit == "ms" ? 1e-3 : 1.0;
-    const double median_s = unit_s * clause.quantiles[clause.quantiles.size() / 2];
-    const bool contains_computing = kSameCost * median_s >= pace->median_s;
     // Without computing, it would be within the limit.
-    const bool is_of_computing = median_s - pace->median_s < unit_s * *clause.limit;
-    if (contains_computing && is_of_computing && pace->median_s > unit_s * *clause.limit)
+    const bool is_of_computing =
+        clause.median_of_program && clause.least_without_program < clause.limit &&
+        std::min(unit_s * *clause.median_of_program, pace->median_s) > unit_s * *clause.limit;
+    if (is_of_computing)
       return fmt::format("Computing an image takes {}, longer than “{}” allows",
                          short_ms(pace->median_s), clause.name);
   }
@@ -257,6 +284,12 @@ MissReason reason_of(const Compared& missed, const std::vector<Compared>& all,
   std::ranges::stable_sort(faster, std::greater<>{}, [&](const Compared* other) {
     return costs_of(*missed.pace(), *other->pace())->other_s;
   });
+  for (const Compared& other : all)
+    if (is_evidence(*other.verdict) && is_sufficient(other.verdict->ruling) &&
+        is_faster(missed, other) &&
+        reaches_more_often(*other.verdict, *missed.verdict, comparisons))
+      return {Evidence::kSlowerReaches, other.label,
+              fmt::format("is {}", name(other.verdict->ruling))};
   const bool is_comparable = missed.pace() && !missed.pace()->speed.stretches_unseen_waits();
   for (const Compared* other : faster)
     if (is_comparable && reaches_more_often(*other->verdict, *missed.verdict, comparisons))
@@ -277,6 +310,9 @@ MissReason reason_of(const Compared& missed, const std::vector<Compared>& all,
   });
   for (const Compared* other : faster) {
     if (some_speed_suffices || !other->verdict->is_missed()) continue;
+    if (const std::string limit = met_by(*other->verdict, *missed.verdict); !limit.empty())
+      return compared(Evidence::kFasterUndecided, *other, missed,
+                      "misses it, too, but meets " + limit);
     if (is_instant(*other)) return compared(Evidence::kInstantMissesToo, *other, missed);
     if (other->pace()->keeps_up() && is_much_faster(*other, missed))
       return compared(Evidence::kFasterMissesToo, *other, missed);

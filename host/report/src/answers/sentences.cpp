@@ -96,6 +96,7 @@ constexpr std::array kMissReasons = {
     " “{condition}” misses it too, although computing takes no time there.",
     " “{condition}” is faster and reads every image, and misses it too.",
     " “{condition}” has the same computer and sensors, and reaches it.",
+    " “{condition}” is slower and {text}.",
 };
 
 std::string reason_text(const MissReason& reason) {
@@ -144,19 +145,23 @@ std::string doubt_text(const FlightsInDoubt& doubt, const ConditionVerdict& cond
          where;
 }
 
-/// What was left out of the world, as far as a sentence can name it.
-std::string left_out_text(const ConditionVerdict& condition) {
+/// The first of several lines, as far as a sentence can name them.
+std::string named(const std::vector<std::string>& lines) {
   constexpr std::size_t kMost = 3;
   std::vector<std::string> parts;
-  for (const std::string& line : condition.left_out) {
+  for (const std::string& line : lines) {
     if (parts.size() == kMost) {
-      parts.push_back(fmt::format("{} more", condition.left_out.size() - kMost));
+      parts.push_back(fmt::format("{} more", lines.size() - kMost));
       break;
     }
     parts.push_back(line.substr(0, std::min(line.find("; "), line.find(". "))));
   }
+  return joined_with_and(parts);
+}
+
+std::string left_out_text(const ConditionVerdict& condition) {
   return fmt::format(" Not simulated as written, which can change the answer: {}.",
-                     joined_with_and(parts));
+                     named(condition.left_out));
 }
 
 /// What limits the evidence.
@@ -167,6 +172,9 @@ std::string doubts_text(const ConditionVerdict& condition) {
   else if (condition.distinct > 1)
     text += " They all begin alike, and differ only in noise and measured times.";
   if (!condition.left_out.empty()) text += left_out_text(condition);
+  // Of a missed goal, it is named as a reason.
+  if (!condition.doubtful.empty() && !condition.miss)
+    text += fmt::format(" Doubtful, which can change the answer: {}.", named(condition.doubtful));
   for (const FlightsInDoubt& doubt : condition.doubts)
     if (doubt.largest.is_of_unseen_time()
             ? condition.ruling != Ruling::kUnseen
@@ -201,6 +209,7 @@ std::string undecided_text(const ConditionVerdict& condition) {
     return fmt::format(" The closest limit ({}, {}) is within the spread of the times.",
                        in_a_sentence(condition.tightest->first),
                        distance_text(condition.tightest->second));
+  if (condition.failed > 0) return " How often those that failed would reach it is not known.";
   if (condition.share->low >= kWantedSuccess || condition.share->high < kWantedSuccess) return "";
   return fmt::format(" So few flights show neither that {} reach it nor that fewer do.", kWanted);
 }
@@ -281,17 +290,15 @@ const Words& words_of(Ruling ruling) {
 /// A good answer that rests on less than what was asked for.
 bool leaves_out(const ConditionVerdict& condition) {
   return is_sufficient(condition.ruling) &&
-         (!condition.left_out.empty() || !condition.uncharged.empty() || condition.failed > 0);
+         (!condition.left_out.empty() || !condition.doubtful.empty() ||
+          !condition.uncharged.empty());
 }
 
 std::string left_out_in_lead(const ConditionVerdict& condition) {
   if (!leaves_out(condition)) return "";
   if (!condition.uncharged.empty())
     return fmt::format(", but “{}” is charged nothing", condition.uncharged.front());
-  return condition.left_out.empty()
-             ? fmt::format(", but {} of {} failed", condition.failed,
-                           counted(condition.flown + condition.failed, "flight"))
-             : kNotAsWritten;
+  return condition.left_out.empty() ? kDoubtful : kNotAsWritten;
 }
 
 std::string lead_of(const ConditionVerdict& condition) {

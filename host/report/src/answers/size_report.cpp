@@ -57,10 +57,12 @@ std::string than(double slowdown) {
 
 /// What the first words must say of the flights on which they rest.
 std::string reservation(const SizedCondition& sized) {
-  const bool leaves_out = std::ranges::any_of(sized.trials, [](const auto& trial) {
-    return std::ranges::any_of(trial.warnings, is_left_out);
-  });
-  return leaves_out ? std::string(kNotAsWritten) + ";" : ",";
+  const auto has = [&](bool (*is)(const Warning&)) {
+    return std::ranges::any_of(
+        sized.trials, [&](const auto& trial) { return std::ranges::any_of(trial.warnings, is); });
+  };
+  if (has(is_left_out)) return std::string(kNotAsWritten) + ";";
+  return has(is_doubtful) ? std::string(kDoubtful) + ";" : ",";
 }
 
 /// Whether the answer is above slowdowns that fail.
@@ -108,6 +110,11 @@ Answer gap_answer(const SuccessGap& gap, const SizeReport& report) {
                                            : "The limit that follows is below those that fail.")};
 }
 
+/// Whether the least slowdown, too, may be insufficient.
+bool shows_no_sufficient(const SizedCondition& sized) {
+  return !is_one_start(sized) && !sized.answer.is_below && sized.answer.threshold.low <= 0.0;
+}
+
 Answer main_answer(const SizeReport& report) {
   const SizedCondition& sized = report.synchronised;
   const sizing::Threshold& threshold = sized.answer.threshold;
@@ -134,6 +141,11 @@ Answer main_answer(const SizeReport& report) {
             fmt::format(" {} “{}”, the most that was flown{} {}", than(report.question.most),
                         sized.condition, reservation(sized), evidence)};
   const std::string interval = is_one ? "" : " " + interval_text(threshold, report.question);
+  if (shows_no_sufficient(sized))
+    return {
+        "Undecided",
+        fmt::format(": no slowdown of “{}” is shown to be sufficient. The limit is within{}, {}",
+                    sized.condition, interval, evidence)};
   return {in_one + slower(threshold.estimate),
           fmt::format(" {} “{}”{}{} {}", than(threshold.estimate), sized.condition, interval,
                       reservation(sized), evidence)};
@@ -216,7 +228,7 @@ bool has_unseen_time(const SizeReport& report) {
 bool is_answered(const SizeReport& report) {
   const SizedCondition& sized = report.synchronised;
   return sized.answer.is_narrow && !sized.answer.is_below && !is_one_start(sized) &&
-         !is_above_gap(report) && !has_unseen_time(report);
+         !shows_no_sufficient(sized) && !is_above_gap(report) && !has_unseen_time(report);
 }
 
 std::vector<Answer> size_answers(const SizeReport& report) {

@@ -26,12 +26,14 @@ std::optional<Answer> sufficient_factor(const std::string& what, const ByFactor&
   const bool is_one_flight =
       std::all_of(flown.begin(), next, [](const auto& one) { return one.second->distinct == 1; });
   const bool is_as_written = std::all_of(flown.begin(), next, [](const auto& one) {
-    return one.second->left_out.empty() && one.second->uncharged.empty();
+    return one.second->left_out.empty() && one.second->doubtful.empty() &&
+           one.second->uncharged.empty();
   });
   return Answer{
-      fmt::format("{} {:g} × slower would do{}",
-                  is_one_flight ? "In one flight each, up to" : "Up to", factor,
-                  is_as_written ? "" : ", but not everything is simulated as written"),
+      fmt::format(
+          "{} {:g} × slower would do{}", is_one_flight ? "In one flight each, up to" : "Up to",
+          factor,
+          is_as_written ? "" : ", but not everything is simulated as written, or is doubtful"),
       fmt::format(": {} is {} at cpu_factor = {:g}, {}.", what, name(largest->ruling), factor,
                   next == flown.end()
                       ? "the largest that was flown"
@@ -70,7 +72,11 @@ std::vector<Answer> sufficient_factors(const std::vector<Verdict>& points) {
 }
 
 bool is_left_out(const Warning& warning) {
-  return warning.can_change_verdict && warning.consequence != Consequence::kDoubtfulSetting;
+  return warning.can_change_verdict && warning.consequence != Consequence::kDoubtful;
+}
+
+bool is_doubtful(const Warning& warning) {
+  return warning.can_change_verdict && warning.consequence == Consequence::kDoubtful;
 }
 
 }  // namespace tether::report

@@ -23,8 +23,10 @@ inline constexpr const char* kVarySeeds =
     "More flights show nothing new, because the seeds change nothing. Give the sensors noise or "
     "delays that vary (a profile), or let the world or the start vary.";
 
-/// Whether what the flight left out can change its verdict, and is not only a doubtful start.
+/// What can change a flight's verdict: something that it left out, or that may be a mistake.
 bool is_left_out(const Warning& warning);
+bool is_doubtful(const Warning& warning);
 inline constexpr const char* kNotAsWritten = ", but not everything is simulated as written";
+inline constexpr const char* kDoubtful = ", but something is doubtful";
 
 }  // namespace tether::report

@@ -104,10 +104,12 @@ void count(ConditionVerdict& verdict, const campaign::TrialResult& trial) {
     return;
   }
   ++verdict.flown;
-  for (const Warning& warning : trial.warnings)
-    if (const std::string line = warning.subject + " " + warning.message;
-        is_left_out(warning) && std::ranges::count(verdict.left_out, line) == 0)
-      verdict.left_out.push_back(line);
+  for (const Warning& warning : trial.warnings) {
+    if (!is_left_out(warning) && !is_doubtful(warning)) continue;
+    auto& lines = is_doubtful(warning) ? verdict.doubtful : verdict.left_out;
+    const std::string line = warning.subject + " " + warning.message;
+    if (std::ranges::count(lines, line) == 0) lines.push_back(line);
+  }
   for (const scenario::Varied& one : trial.varied)
     if (std::ranges::count(verdict.varied, one.what) == 0) verdict.varied.push_back(one.what);
   if (trial.replay)
@@ -151,8 +153,12 @@ Ruling ruling_of(const ConditionVerdict& verdict, const campaign::ConditionResul
   const bool all = verdict.reached == verdict.flown;
   if (all && std::ranges::none_of(trials, has_limit)) return Ruling::kNothingToDecide;
   if (is_within_spread(verdict) || !verdict.mixed_build.empty()) return Ruling::kUndecided;
-  if (verdict.share->low >= kWantedSuccess) return Ruling::kFastEnough;
-  if (all) return Ruling::kFastEnoughSoFar;
+  // Those that failed could all have missed it.
+  const bool is_shown =
+      exact_interval(verdict.distinct_reached, verdict.distinct + verdict.failed).low >=
+      kWantedSuccess;
+  if (is_shown) return Ruling::kFastEnough;
+  if (all && verdict.failed == 0) return Ruling::kFastEnoughSoFar;
   const bool is_missed = verdict.share->high < kWantedSuccess || verdict.is_one_flight();
   // A board that was throttled could do better.
   return is_missed && verdict.throttled == 0 ? Ruling::kGoalMissed : Ruling::kUndecided;
@@ -287,7 +293,7 @@ std::vector<Advice> advice_on(const ConditionVerdict& lead) {
       }
       if (lead.flown > 1 && lead.is_one_flight())
         advice.push_back({Kind::kVarySeeds});
-      else if (!is_within_spread(lead))
+      else if (!is_within_spread(lead) && lead.failed == 0)
         advice.push_back({Kind::kFlyMore, lead.condition, flights_to_decide(lead)});
       if (lead.reached < lead.flown && is_too_slow)
         advice.push_back({Kind::kSpeedUpStage, lead.pace->stages.front().stage});

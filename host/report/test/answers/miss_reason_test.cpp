@@ -124,7 +124,36 @@ TEST_F(MissReasons, AreSpeedIfAFasterConditionReachesTheGoal) {
   expect_unknown("another emulated CPU");
   paces_[board]->speed.emulator.cpu_model = "max";
   paces_[host]->median_s = 0.3;
-  expect_unknown("not faster");
+  EXPECT_EQ(ruling(board), Ruling::kOtherReason) << "a slower one reaches it";
+  EXPECT_THAT(answers_of({verdict()})[0].rest,
+              HasSubstr("“host” is slower and is fast enough so far."));
+}
+
+TEST_F(MissReasons, AreNotKnownWhereAFasterConditionMeetsSomeOfTheLimits) {
+  const std::size_t board = add("board", 0, 5, measured(0.2));
+  const std::size_t host = add("host", 0, 5, measured(0.002));
+  program(board).clock.factor = 100.0;
+  EXPECT_EQ(ruling(board), Ruling::kOtherReason);
+  for (campaign::TrialResult& trial : trials(host)) {
+    trial.metrics[0].value = 1.0;
+    trial.clauses = {{.uav = "uav1", .name = "never met", .met = false, .margin = -1.0}};
+  }
+  EXPECT_EQ(ruling(board), Ruling::kGoalMissed);
+  EXPECT_THAT(answers_of({verdict()})[0].rest,
+              HasSubstr("“host” is faster and misses it, too, but meets time required"));
+}
+
+// As many flights as failed could have missed the goal.
+TEST_F(MissReasons, RestOnFlightsThatEndedAndNotOnThoseThatFailed) {
+  const std::size_t board = add("board", 0, 5, measured(0.2));
+  const std::size_t host = add("host", 5, 0, measured(0.02));
+  program(board).clock.factor = 10.0;
+  for (int i = 0; i < 6; ++i) {
+    trials(host).push_back(trials(host)[0]);
+    campaign::invalidate(trials(host).back(), "the SUT was lost");
+  }
+  EXPECT_EQ(verdict().conditions[host].ruling, Ruling::kUndecided);
+  EXPECT_EQ(ruling(board), Ruling::kGoalMissed);
 }
 
 // The sleeping of one thread takes longer by the factor, and none of the board's would.
@@ -165,18 +194,20 @@ TEST_F(MissReasons, AreSpeedIfComputingAloneTakesLongerThanALimit) {
                                .quantiles = {190.0, 210.0, 230.0},
                                .quantity = "reaction_time",
                                .sensor = "camera",
-                               .limit = 150.0}};
+                               .limit = 150.0,
+                               .least_without_program = 10.0,
+                               .median_of_program = 200.0}};
   EXPECT_EQ(ruling(board), Ruling::kNotFastEnough);
   EXPECT_THAT(verdict_text({verdict()}, Markup::kPlain),
               testing::AllOf(StartsWith("Not fast enough in this flight: "),
                              HasSubstr("Computing an image takes 200 ms, longer than “quick” "
                                        "allows.")));
   trials(board)[0].clauses[0].limit = 9.0;
-  EXPECT_EQ(ruling(board), Ruling::kGoalMissed) << "sensors alone take 10 ms";
+  EXPECT_EQ(ruling(board), Ruling::kOtherReason) << "sensors alone take 10 ms";
   trials(board)[0].clauses[0].limit = 205.0;
   EXPECT_EQ(ruling(board), Ruling::kGoalMissed) << "sensors and waiting take the rest";
   trials(board)[0].clauses[0].limit = 15.0;
-  trials(board)[0].clauses[0].quantiles = {0.0, 20.0, 40.0};
+  trials(board)[0].clauses[0].median_of_program = 10.0;
   EXPECT_EQ(ruling(board), Ruling::kGoalMissed) << "a jitter does not contain the computing";
 }
 
@@ -191,7 +222,9 @@ TEST_F(MissReasons, AreNotSpeedByALimitThatComputingIsNoPartOf) {
                                     .quantiles = {190.0, 210.0, 230.0},
                                     .quantity = "reaction_time",
                                     .sensor = "camera",
-                                    .limit = 150.0};
+                                    .limit = 150.0,
+                                    .least_without_program = 10.0,
+                                    .median_of_program = 200.0};
   auto& clauses = trials(board)[0].clauses;
   clauses = {clause};
   clauses[0].quantity = "loop_period";
@@ -257,7 +290,7 @@ TEST_F(MissReasons, AreKnownOfWhatHasNothingToDoWithSpeed) {
 TEST_F(MissReasons, ArePossibleOfWhatAProgramMayNotNeed) {
   add("board", 0, 1, measured(0.2));
   trials(0)[0].warnings = {
-      {Consequence::kDoubtfulSetting, {}, "UAV 'uav1'", "starts 76 m from the nearest anchor"}};
+      {Consequence::kDoubtful, {}, "UAV 'uav1'", "starts 76 m from the nearest anchor"}};
   EXPECT_EQ(ruling(0), Ruling::kGoalMissed);
   EXPECT_THAT(verdict_text({verdict()}, Markup::kPlain),
               HasSubstr("A possible reason: UAV 'uav1' starts 76 m from the nearest anchor. "

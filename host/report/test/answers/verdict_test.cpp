@@ -243,7 +243,17 @@ TEST(Verdict, OfASweepSaysWhatItsHeadlineDoesNotKnow) {
   Warning wind{Consequence::kBehavesDifferent, {}, "<wind>", "is not represented"};
   wind.can_change_verdict = true;
   EXPECT_THAT(answers_of({point("2", {wind}), point("4", {})})[0].lead,
-              EndsWith(", but not everything is simulated as written"));
+              EndsWith(", but not everything is simulated as written, or is doubtful"));
+}
+
+TEST(Verdict, ThatIsGoodNamesWhatIsDoubtful) {
+  campaign::ScenarioResults scenario = flights(10, 0);
+  scenario.conditions[0].trials[3].warnings = {
+      {Consequence::kDoubtful, {}, "UAV 'uav1'", "starts inside 'room'"}};
+  EXPECT_THAT(verdict_text({verdict_of(scenario)}, Markup::kPlain),
+              AllOf(StartsWith("Fast enough so far, but something is doubtful: "),
+                    HasSubstr("Doubtful, which can change the answer: UAV 'uav1' starts inside "
+                              "'room'.")));
 }
 
 TEST(Verdict, TakesThePaceOfItsFlightsAndNamesAResultWithoutOne) {

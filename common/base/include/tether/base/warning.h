@@ -13,16 +13,16 @@ namespace tether {
 /// What a warning about a world, a UAV or a profile means for the simulation: mostly, that a part
 /// of it is not represented.
 enum class Consequence {
-  kDoubtfulSetting,   ///< a UAV's start or a sensor's setting may be a mistake
+  kDoubtful,          ///< it may be a mistake: a start, a sensor's setting, how a flight ended
   kMissing,           ///< it is missing from the world
   kLooksDifferent,    ///< cameras see it differently
   kBehavesDifferent,  ///< it moves, collides or measures differently
   kNoEffect,          ///< it has no effect here
 };
 inline constexpr std::array kConsequences = {
-    Consequence::kDoubtfulSetting, Consequence::kMissing, Consequence::kLooksDifferent,
+    Consequence::kDoubtful, Consequence::kMissing, Consequence::kLooksDifferent,
     Consequence::kBehavesDifferent, Consequence::kNoEffect};
-/// "doubtful_setting", "missing", "looks_different", "behaves_differently", "no_effect".
+/// "doubtful", "missing", "looks_different", "behaves_differently", "no_effect".
 std::string_view name(Consequence consequence);
 /// Whether something with this consequence can usually change what a flight is found to do. Looks
 /// usually cannot: lights and shadows that differ a little.

@@ -56,6 +56,9 @@ struct ClauseVerdict {
   std::string quantity{}, sensor{};
   /// The bound of the condition, or the time from `from` to the deadline, in `unit`.
   std::optional<double> limit{};
+  /// Of a reaction time, in `unit`: the least that passed without the program, until it had the
+  /// image and from its command until the effect; and the median of what passed in between.
+  std::optional<double> least_without_program{}, median_of_program{};
 
   friend bool operator==(const ClauseVerdict&, const ClauseVerdict&) = default;
 };

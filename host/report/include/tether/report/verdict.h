@@ -69,6 +69,7 @@ struct MissReason {
     kInstantMissesToo,    ///< … under another one, which misses the goal, too
     kFasterMissesToo,     ///< another one is faster, reads every image, and misses it, too
     kEquallyFastReaches,  ///< another one has the same computers and sensors, and reaches it
+    kSlowerReaches,       ///< another one differs in speed only, is slower, and reaches it
   };
   Evidence evidence = Evidence::kNothing;
   std::string condition{};         ///< the other one
@@ -112,6 +113,7 @@ struct ConditionVerdict {
   std::vector<FlightsInDoubt> doubts{};  ///< one of each kind, in the order of the kinds
   /// What of the files is not simulated as written and can change the verdict, one line each.
   std::vector<std::string> left_out{};
+  std::vector<std::string> doubtful{};  ///< what of a flight may be a mistake, one line each
   /// Stages that the flights computed for nothing: times are replayed, and have none of them.
   std::vector<std::string> uncharged{};
   std::vector<std::string> varied{};  ///< what the scenario varies from flight to flight
