@@ -132,6 +132,13 @@ std::optional<Measurement> Stepper::plan(std::size_t uav, std::uint64_t call,
   return measurement;
 }
 
+std::optional<std::uint64_t> Stepper::skip(std::size_t uav, const link::ReadSensor& read,
+                                           SimTime t) {
+  const auto skipped_to = samplers_[uav].skip(read, t);
+  note_change(uav);
+  return skipped_to;
+}
+
 void Stepper::close(std::size_t uav) {
   samplers_[uav].close();
   note_change(uav);
