@@ -112,7 +112,9 @@ void Stepper::sample() {
   };
   while (same_instant(due_.least()) <= st_) {
     const std::size_t uav = due_.first();
-    samplers_[uav].sample(st_, same_instant((*times_)[uav].bound()), capture);
+    // A message can end the present call of its SUT at any time from now on.
+    const SimTime earliest = std::min(st_, same_instant((*times_)[uav].bound()));
+    samplers_[uav].sample(st_, earliest, capture);
     note_change(uav);
   }
 }

@@ -83,6 +83,18 @@ TEST_F(RadioTest, AWaitForASensorEndsWhenItsMeasurementIsAvailable) {
   EXPECT_FALSE(replies.at(4).message);
 }
 
+// Long before its timeout. What the camera had by then is still there.
+TEST_F(RadioTest, AReadAfterAMessageGetsWhatWasAvailableThen) {
+  const RunReport report = run_all(
+      {{send(milliseconds(40)), finish(milliseconds(50))},
+       {receive(microseconds(100), std::chrono::seconds(1)), read({}, kCamera), finish({})}});
+  ASSERT_EQ(report.end, RunEnd::kFinished) << report.reason;
+  const auto replies = replies_to(2);
+  ASSERT_TRUE(replies.at(1).sample);
+  EXPECT_EQ(replies.at(1).resume_at, us(40'000));
+  EXPECT_EQ(std::get<uav::CameraSample>(*replies.at(1).sample).index, 0U);
+}
+
 TEST_F(RadioTest, AMessageEndsAWaitForASensor) {
   run_all({{send(microseconds(2'345)), finish(milliseconds(50))},
            {{{}, link::ReceiveMessage{milliseconds(20), {kCamera}}}, finish({})}});
