@@ -192,7 +192,7 @@ describe(tether science
   "/usr/share/doc/tether/guide.")
 set(CPACK_DEBIAN_TETHER_PACKAGE_RECOMMENDS "tether-sut, gnuplot-nox")
 # Cameras in Gazebo draw on it.
-set(CPACK_DEBIAN_TETHER_PACKAGE_SUGGESTS "xvfb, tether-counter")
+set(CPACK_DEBIAN_TETHER_PACKAGE_SUGGESTS "xvfb, tether-counter, python3-opencv")
 
 describe(tether-sut science
   "vision tasks of a UAV, flown in simulation or with real sensors"

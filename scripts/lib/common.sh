@@ -31,6 +31,8 @@ packages_demo=(qemu-user)
 packages_test=(git python3 cloc libgtest-dev libgmock-dev libbenchmark-dev clang-format qemu-user)
 # The library as a user builds against it, and the manual pages.
 packages_test+=(make pkgconf mandoc)
+# What a program as it is reads its camera by (data/programs/mavlink_face_anchor.py).
+packages_test+=(python3-opencv)
 # The schema of JUnit files.
 packages_test+=(libxml2-utils)
 # Boards in the tests: this machine, over SSH.

@@ -78,6 +78,7 @@ record::Interaction interaction(Choices& choices) {
   m.wall_at_release = time<WallTime>(choices);
   if (m.latest) m.sample_stamp = m.available_at;
   if (m.latest && m.stamped) m.repeated_index = m.sequence;
+  if (m.only_if_available && m.stamped) m.skipped_to = m.sample_index;
   return m;
 }
 

@@ -106,6 +106,7 @@ void fields(auto& io, Is<ReadSensor> auto& m) {
   io("queue", m.queue, Default{1u},
      Rule{[](std::uint32_t queue) { return queue >= 1 && queue <= kMaxQueue; },
           "is not within 1..4096"});
+  io("skips", m.skips);
 }
 void fields(auto& io, Is<SetVelocity> auto& m) {
   io.require([&m] { return complaint_about(to_setpoint(m.command)).empty(); }, "velocity command",
@@ -135,6 +136,7 @@ void fields(auto& io, Is<SendMessage> auto& m) {
 }
 void fields(auto& io, Is<ReceiveMessage> auto& m) {
   io("timeout_ns", m.timeout);
+  io("sensors", m.sensors, OmitEmpty{}, AtMost{kMaxCatalogueEntries, "has too many sensors"});
 }
 void fields(auto&, Is<ReadBattery> auto&) {}
 

@@ -110,6 +110,12 @@ class RandomMessage {
     return out;
   }
 
+  std::vector<std::uint32_t> sensors() {
+    std::vector<std::uint32_t> out(random_.bits() % 4);
+    for (auto& sensor : out) sensor = random_.bits() % 1000;
+    return out;
+  }
+
   std::vector<uav::TimedSetpoint> trajectory() {
     std::vector<uav::TimedSetpoint> out;
     for (std::uint32_t i = 0; i <= random_.bits() % 4; ++i) {
@@ -125,12 +131,13 @@ class RandomMessage {
     Request out{1 + word() / 2, time<ExecTime>(), time<ExecTime>().time_since_epoch(), {}};
     const std::uint32_t kind = random_.bits() % 8;
     if (kind == 0)
-      out.body = ReadSensor{random_.bits() % 1000, coin(), coin(), 1 + random_.bits() % 4096};
+      out.body =
+          ReadSensor{random_.bits() % 1000, coin(), coin(), 1 + random_.bits() % 4096, coin()};
     if (kind == 1) out.body = SetVelocity{{vec3(), number()}};
     if (kind == 2) out.body = Sleep{time<ExecTime>(), coin()};
     if (kind == 3) out.body = Finish{coin(), text(), coin() ? json() : ""};
     if (kind == 4) out.body = SendMessage{text(), bytes()};
-    if (kind == 5) out.body = ReceiveMessage{time<ExecTime>().time_since_epoch()};
+    if (kind == 5) out.body = ReceiveMessage{time<ExecTime>().time_since_epoch(), sensors()};
     if (kind == 6) out.body = ReadBattery{};
     if (kind == 7) out.body = SetTrajectory{trajectory()};
     out.stages = stages();

@@ -40,6 +40,16 @@ void check_index(const Entry& entry, SensorHistory& sensor, Report& report) {
   sensor.last_available_at = available;
 }
 
+// Nothing of the future is skipped.
+void check_skip(const Entry& entry, SensorHistory& sensor, Report& report) {
+  const std::uint64_t index = *entry.message.skipped_to;
+  const Wide sampled = wide(sensor.info->phase) + Wide{index} * wide(sensor.info->period);
+  if (sampled > wide(entry.message.request_at))
+    report.add(1, entry, "measurement {} of \"{}\" was skipped at {}, before it was sampled at {}",
+               index, sensor.info->name, ns(entry.message.request_at), ns(sampled));
+  sensor.newest = std::max(sensor.newest.value_or(0), index);
+}
+
 // A read without a measurement is correct only if no suitable one was available for certain, even
 // with the sensor's largest delay.
 void check_missed(const Entry& entry, const SensorHistory& sensor, const DriverDraws& driver,
@@ -83,6 +93,8 @@ void check_newness(const record::Record& record, Report& report) {
                              entry->message.sample_state_at;
       if (has_times) {
         check_index(*entry, sensor->second, report);
+      } else if (entry->message.skipped_to) {
+        check_skip(*entry, sensor->second, report);
       } else if (entry->message.only_if_available) {
         check_missed(*entry, sensor->second, DriverDraws(record.header, *sensor->second.info),
                      report);

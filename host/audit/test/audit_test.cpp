@@ -243,6 +243,28 @@ Interaction& first_reading(Record& record) {
       ->message;
 }
 
+// A read that was answered at once, as one that skips it.
+TEST(Audit, NothingOfTheFutureIsSkipped) {
+  Record record = generate({});
+  Interaction& skip = where(record, [&](const Interaction& m) {
+    const auto& sensors = record.header.sensors;
+    return m.kind == record::kSensor && m.reply_at == m.request_at && !m.latest && m.sampled_at &&
+           std::ranges::any_of(sensors, [&](const record::SensorInfo& sensor) {
+             return sensor.uav == m.uav && sensor.name == m.sensor && sensor.periodic;
+           });
+  });
+  skip.only_if_available = true;
+  skip.skipped_to = skip.sample_index;
+  skip.sampled_at.reset();
+  skip.sample_state_at.reset();
+  skip.available_at.reset();
+  skip.seen_anchors.reset();
+  skip.grid_error = same_instant(skip.reply_at) - skip.st_at_release;
+  EXPECT_TRUE(audit(record).passed()) << to_text(audit(record));
+  *skip.skipped_to += 1'000'000;
+  EXPECT_TRUE(rules_of(record).contains(1));
+}
+
 // A read that arrived before its periodic sensor measured.
 Record waiting_for_next(Duration wait) {
   Record record = free_running();

@@ -21,7 +21,11 @@ ExecTime plan_read(std::size_t uav, record::Interaction& entry, const link::Read
                    Stepper& stepper) {
   entry.sensor = stepper.sampler(uav).name(read.sensor);
   entry.latest = read.latest;
-  entry.only_if_available = read.only_if_available;
+  entry.only_if_available = read.only_if_available || read.skips;
+  if (read.skips) {
+    entry.skipped_to = stepper.skip(uav, read, same_instant(entry.request_at));
+    return entry.request_at;
+  }
   const auto measurement = stepper.plan(uav, entry.sequence, read, same_instant(entry.request_at));
   if (!measurement) return entry.request_at;
 
@@ -57,12 +61,20 @@ ExecTime plan_command(const Session& session, record::Interaction& entry,
   return entry.request_at;
 }
 
+// A measurement that is available earlier is an earlier timeout.
 ExecTime plan_receive(std::size_t uav, PendingInteraction& pending,
-                      const link::ReceiveMessage& receive, RadioTraffic& radio) {
+                      const link::ReceiveMessage& receive, const Stepper& stepper,
+                      RadioTraffic& radio) {
   record::Interaction& entry = pending.entry;
   const ExecTime last = from_ns<ExecTime>(link::kMaxTimestampNs - 1);
   entry.receive_until =
       receive.timeout < last - entry.request_at ? entry.request_at + receive.timeout : last;
+  for (const std::uint32_t sensor : receive.sensors) {
+    const SimTime available =
+        stepper.sampler(uav).next_available(sensor, same_instant(entry.request_at));
+    entry.receive_until =
+        std::min(*entry.receive_until, std::max(entry.request_at, same_instant(available)));
+  }
   pending.received = radio.take_first(uav, same_instant(*entry.receive_until));
   return pending.received ? std::max(entry.request_at, same_instant(pending.received->at))
                           : *entry.receive_until;
@@ -129,7 +141,7 @@ ExecTime plan(Session& session, PendingInteraction& pending, const Parts& parts)
     return entry.request_at;
   }
   if (const auto* receive = std::get_if<link::ReceiveMessage>(&request.body))
-    return plan_receive(session.uav, pending, *receive, radio);
+    return plan_receive(session.uav, pending, *receive, stepper, radio);
   if (std::holds_alternative<link::ReadBattery>(request.body)) return entry.request_at;
   session.finish = std::get<link::Finish>(request.body);
   session.finish->outcome = printable(session.finish->outcome);

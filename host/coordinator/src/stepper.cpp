@@ -112,7 +112,9 @@ void Stepper::sample() {
   };
   while (same_instant(due_.least()) <= st_) {
     const std::size_t uav = due_.first();
-    samplers_[uav].sample(st_, same_instant((*times_)[uav].bound()), capture);
+    // A message can end the present call of its SUT at any time from now on.
+    const SimTime earliest = std::min(st_, same_instant((*times_)[uav].bound()));
+    samplers_[uav].sample(st_, earliest, capture);
     note_change(uav);
   }
 }
@@ -130,6 +132,13 @@ std::optional<Measurement> Stepper::plan(std::size_t uav, std::uint64_t call,
   auto measurement = samplers_[uav].plan(call, read, t);
   note_change(uav);
   return measurement;
+}
+
+std::optional<std::uint64_t> Stepper::skip(std::size_t uav, const link::ReadSensor& read,
+                                           SimTime t) {
+  const auto skipped_to = samplers_[uav].skip(read, t);
+  note_change(uav);
+  return skipped_to;
 }
 
 void Stepper::close(std::size_t uav) {

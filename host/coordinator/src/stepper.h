@@ -75,6 +75,7 @@ class Stepper {
   /// As those of its Sampler.
   std::optional<Measurement> plan(std::size_t uav, std::uint64_t call, const link::ReadSensor& read,
                                   SimTime t);
+  std::optional<std::uint64_t> skip(std::size_t uav, const link::ReadSensor& read, SimTime t);
   void close(std::size_t uav);
   /// The sample for the read of this interaction, noted in it; none if it is not a read.
   std::optional<uav::Sample> measure(std::size_t uav, record::Interaction& entry);

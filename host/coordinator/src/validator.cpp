@@ -70,6 +70,10 @@ MaybeFault body_fault(const link::ReadSensor& read, const Standing& sut) {
     return Fault{Kind::kNotAvailable,
                  fmt::format("a read of sensor {}, but the UAV has only {} sensors", read.sensor,
                              sut.sensors.size())};
+  if (read.skips && !sut.sensors.is_periodic(read.sensor))
+    return Fault{Kind::kNotAvailable,
+                 fmt::format("a skip of sensor \"{}\", which measures on demand",
+                             sut.sensors.name(read.sensor))};
   if (read.only_if_available && !sut.sensors.is_periodic(read.sensor))
     return Fault{Kind::kNotAvailable,
                  fmt::format("a read \"if available\" of sensor \"{}\", which measures on demand",
@@ -127,7 +131,11 @@ MaybeFault body_fault(const link::SendMessage& send, const Standing& sut) {
                            send.to.empty() ? "all others" : "\"" + printable(send.to) + "\"")};
 }
 
-MaybeFault body_fault(const link::ReceiveMessage&, const Standing&) {
+MaybeFault body_fault(const link::ReceiveMessage& receive, const Standing& sut) {
+  for (const std::uint32_t sensor : receive.sensors)
+    if (sensor >= sut.sensors.size() || !sut.sensors.is_periodic(sensor))
+      return Fault{Kind::kNotAvailable,
+                   fmt::format("a wait for sensor {}, which is no periodic one", sensor)};
   return std::nullopt;
 }
 

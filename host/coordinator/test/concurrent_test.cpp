@@ -224,6 +224,21 @@ TEST_F(ConcurrentTest, ReadsIfAvailableDoNotWait) {
   }
 }
 
+// By 100 ms, measurements 0 to 2 are available, and 3 at 109.4 ms.
+TEST_F(ConcurrentTest, WhatIsSkippedIsNotReadAnyMore) {
+  const Act skip{milliseconds(100), link::ReadSensor{.sensor = kCamera, .queue = 9, .skips = true}};
+  const Act again{{}, link::ReadSensor{.sensor = kCamera, .queue = 9, .skips = true}};
+  run({skip, again, {{}, link::ReadSensor{.sensor = kCamera, .queue = 9}}, finish({})});
+  const auto& log = recorder_.interactions;
+  EXPECT_EQ(log.at(0).reply_at, us(100'000));
+  EXPECT_EQ(log.at(0).skipped_to, 2U);
+  EXPECT_FALSE(log.at(0).sampled_at);
+  EXPECT_FALSE(sent_to<link::Reply>(1).at(0).sample);
+  EXPECT_FALSE(log.at(1).skipped_to) << "there is nothing more";
+  EXPECT_EQ(log.at(2).sample_index, 3U);
+  EXPECT_EQ(log.at(2).reply_at, us(109'400));
+}
+
 TEST_F(ConcurrentTest, SeveralRequestsAreOpenInFreeRunning) {
   set_free_running(1.0);
   const RunReport report =

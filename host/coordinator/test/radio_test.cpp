@@ -66,6 +66,42 @@ TEST_F(RadioTest, AReceiveWithoutAMessageEndsAtItsTimeout) {
   EXPECT_EQ(replies[1].resume_at, us(3'500));
 }
 
+// Of the camera: sampled at 33 ms, available 10.4 ms later; the first one at once.
+TEST_F(RadioTest, AWaitForASensorEndsWhenItsMeasurementIsAvailable) {
+  const auto receive_or = [](Duration timeout) {
+    return Act{{}, link::ReceiveMessage{timeout, {kCamera}}};
+  };
+  run_all({{finish(milliseconds(90))},
+           {receive_or(milliseconds(5)), receive_or(milliseconds(50)), receive_or({}),
+            read({}, kCamera), receive_or(milliseconds(50)), finish({})}});
+  const auto replies = replies_to(2);
+  EXPECT_EQ(replies.at(0).resume_at, us(5'000)) << "the timeout is earlier";
+  EXPECT_EQ(replies.at(1).resume_at, us(10'400));
+  EXPECT_EQ(replies.at(2).resume_at, us(10'400)) << "still there";
+  EXPECT_EQ(replies.at(3).resume_at, us(10'400));
+  EXPECT_EQ(replies.at(4).resume_at, us(43'400));
+  EXPECT_FALSE(replies.at(4).message);
+}
+
+// Long before its timeout. What the camera had by then is still there.
+TEST_F(RadioTest, AReadAfterAMessageGetsWhatWasAvailableThen) {
+  const RunReport report = run_all(
+      {{send(milliseconds(40)), finish(milliseconds(50))},
+       {receive(microseconds(100), std::chrono::seconds(1)), read({}, kCamera), finish({})}});
+  ASSERT_EQ(report.end, RunEnd::kFinished) << report.reason;
+  const auto replies = replies_to(2);
+  ASSERT_TRUE(replies.at(1).sample);
+  EXPECT_EQ(replies.at(1).resume_at, us(40'000));
+  EXPECT_EQ(std::get<uav::CameraSample>(*replies.at(1).sample).index, 0U);
+}
+
+TEST_F(RadioTest, AMessageEndsAWaitForASensor) {
+  run_all({{send(microseconds(2'345)), finish(milliseconds(50))},
+           {{{}, link::ReceiveMessage{milliseconds(20), {kCamera}}}, finish({})}});
+  EXPECT_TRUE(replies_to(2).at(0).message);
+  EXPECT_EQ(replies_to(2)[0].resume_at, us(2'345));
+}
+
 TEST_F(RadioTest, AMessageWaitsForItsReceiver) {
   run_all(
       {{send(microseconds(10)), send(microseconds(10)), finish(milliseconds(1))},

@@ -106,6 +106,14 @@ TEST_F(Validator, ReadsNeedASensorOfTheUav) {
   expect(std::nullopt, request(link::ReadSensor{0, false, true}));
   expect(Kind::kNotAvailable, request(link::ReadSensor{1, false, true}));
   expect(Kind::kNotAvailable, request(link::ReadSensor{1, false, false, 2}));
+  expect(std::nullopt, request(link::ReadSensor{.sensor = 0, .skips = true}));
+  expect(Kind::kNotAvailable, request(link::ReadSensor{.sensor = 1, .skips = true}));
+}
+
+TEST_F(Validator, WaitsForSensorsNeedPeriodicOnes) {
+  expect(std::nullopt, request(link::ReceiveMessage{milliseconds(1), {0}}));
+  expect(Kind::kNotAvailable, request(link::ReceiveMessage{milliseconds(1), {0, 1}}));
+  expect(Kind::kNotAvailable, request(link::ReceiveMessage{milliseconds(1), {2}}));
 }
 
 TEST_F(Validator, ReadsOfTheBatteryNeedOne) {

@@ -1,5 +1,6 @@
 #include "agent.h"
 
+#include "beside_source.h"
 #include "clocks.h"
 #include "real.h"
 
@@ -13,6 +14,7 @@
 #include <utility>
 
 #include <poll.h>
+#include <pthread.h>
 #include <sys/eventfd.h>
 #include <unistd.h>
 
@@ -27,6 +29,10 @@ namespace {
 constexpr Duration kShortestSlice = std::chrono::microseconds(500);
 constexpr Duration kLongestSlice = std::chrono::milliseconds(5);
 constexpr Duration kLongestUnwoken = std::chrono::milliseconds(1);
+// A thread that waits beside one that computes looks so often for what has arrived [ET].
+constexpr Duration kBetweenLooks = std::chrono::milliseconds(2);
+// After so long it is told that nothing was used [ET].
+constexpr Duration kIdle = std::chrono::seconds(10);
 // Of a wait without a deadline; then it begins again.
 constexpr Duration kForEver = std::chrono::hours(1);
 
@@ -58,6 +64,7 @@ std::string program_name() {
 }  // namespace
 
 thread_local int Inside::depth_ = 0;
+thread_local Unpaid* Unpaid::current_ = nullptr;
 std::atomic<Agent*> Agent::instance_ = nullptr;
 
 void Agent::start() {
@@ -65,6 +72,7 @@ void Agent::start() {
   auto options = client::options_from_environment();
   if (!options) return say(options.failure().message + "; the program runs by itself");
   options->sut_name = program_name();
+  if (options->time) options->time = charge_beside_calls(std::move(options->time));
   client::TimeSource* const source = options->time.get();
   auto vehicle = client::connect(std::move(*options));
   if (!vehicle) {
@@ -85,21 +93,76 @@ void Agent::end(const Failure& failure) {
   std::abort();
 }
 
+// A program that uses some of it is right: it need not use all.
+void Agent::tell_if_idle() {
+  if (is_known_to_be_used_) return;
+  is_known_to_be_used_ = is_fed();
+  if (is_known_to_be_used_ || now() < ExecTime(kIdle)) return;
+  is_known_to_be_used_ = true;
+  say("for 10 s the program has used nothing of the UAV: no UDP port of a companion (14540, "
+      "14550), "
+      "no serial port, and none of its cameras, of which it has " +
+      std::to_string(cameras_.cameras().size()));
+}
+
+// Cameras that find no buffer for an image do not wake anybody.
 bool Agent::receive_until(std::optional<ExecTime> until) {
+  tell_if_idle();
+  std::vector<std::string_view> sensors;
+  for (const Camera& camera : cameras_.cameras())
+    if (camera.has_room()) sensors.push_back(camera.sensor());
   const Duration timeout = until ? std::max(Duration(0), *until - now()) : kForEver;
-  auto message = vehicle_->receive(timeout);
-  if (message) {
-    if (message->from == link::kAutopilot) port_.deliver(message->bytes);
-    return true;
-  }
-  if (message.failure().kind != Failure::Kind::kNothingYet) end(message.failure());
-  return false;
+  const auto received =
+      Unpaid::in_call([&] { return vehicle_->receive_or_measure(timeout, sensors); });
+  if (!received && received.failure().kind != Failure::Kind::kNothingYet) end(received.failure());
+  if (received && *received && (*received)->from == link::kAutopilot)
+    port_.deliver((*received)->bytes);
+  if (received && !*received)
+    for (Camera& camera : cameras_.cameras()) camera.take_arrived();
+  return received.ok();
 }
 
 void Agent::take_arrived() {
-  const std::lock_guard leading(leading_);
-  while (receive_until(now())) {
+  with_cameras([this](CameraFiles& cameras) {
+    while (receive_until(now())) {
+    }
+    for (Camera& camera : cameras.cameras()) camera.take_arrived();
+  });
+}
+
+void Agent::add_cameras() {
+  for (const uav::SensorDescription& sensor : vehicle_->catalogue().sensors) {
+    const auto kind = sensor.camera_kind();
+    if (!kind || !uav::has_color(*kind) || sensor.rate_hz <= 0.0) continue;
+    cameras_.add(sensor, {.take = [this, name = sensor.name] { return take_image(name); },
+                          .drop = [this, name = sensor.name](bool keeps) { drop(name, keeps); },
+                          .now = [this] { return now(); }});
   }
+}
+
+std::optional<uav::CameraSample> Agent::take_image(const std::string& sensor) {
+  auto image = Unpaid::in_call(
+      [&] { return vehicle_->read<uav::CameraSample>(sensor, client::Read::kIfAvailable); });
+  if (image) return std::move(*image);
+  if (image.failure().kind != Failure::Kind::kNothingYet) end(image.failure());
+  return std::nullopt;
+}
+
+// A driver keeps the oldest images, a queue the newest ones: so it has to be long.
+void Agent::drop(const std::string& sensor, bool keeps_later_ones) {
+  static_cast<void>(vehicle_->set_queue(sensor, keeps_later_ones ? link::kMaxQueue : 1));
+  const Status skipped = Unpaid::in_call([&] { return vehicle_->skip(sensor); });
+  if (!skipped) end(skipped.failure());
+}
+
+void Agent::forget(int fd) {
+  port_.forget(fd);
+  if (is_camera(fd)) with_cameras([fd](CameraFiles& cameras) { cameras.forget(fd); });
+}
+
+void Agent::copy(int fd, int copy) {
+  port_.copy(fd, copy);
+  if (is_camera(fd)) with_cameras([=](CameraFiles& cameras) { cameras.copy(fd, copy); });
 }
 
 bool Agent::send(std::span<const std::uint8_t> bytes) {
@@ -110,27 +173,14 @@ bool Agent::send(std::span<const std::uint8_t> bytes) {
   return false;
 }
 
-/// What the calling thread computes while it lives is not the program's, but for calls of the
-/// vehicle, in which the clock stands anyway.
-class Agent::Unpaid {
- public:
-  explicit Unpaid(client::TimeSource& source) : source_(&source) { go_on(); }
-  ~Unpaid() { pause(); }
-  Unpaid(const Unpaid&) = delete;
-  Unpaid& operator=(const Unpaid&) = delete;
+void Agent::send_stream(std::span<const std::uint8_t> bytes) {
+  const std::lock_guard lock(stream_mutex_);
+  stream_.add(bytes, [this](std::span<const std::uint8_t> frame) { send(frame); });
+}
 
-  /// So far: others that read the time do not see it.
-  void settle() {
-    pause();
-    go_on();
-  }
-  void go_on() { since_ = os::read_clock(CLOCK_THREAD_CPUTIME_ID); }
-  void pause() { source_->leave_out(os::read_clock(CLOCK_THREAD_CPUTIME_ID) - since_); }
-
- private:
-  client::TimeSource* source_;
-  Duration since_{0};
-};
+bool Agent::has_controller() const {
+  return std::ranges::count(vehicle_->peers(), link::kAutopilot) > 0;
+}
 
 /// Of one wait: ET when it looked last, and how long it waited since.
 struct Agent::Patience {
@@ -154,7 +204,7 @@ Duration Agent::slice(std::optional<ExecTime> deadline, Patience& patience) cons
 }
 
 // Whether ET went on, or a message came. Nobody may be past its deadline: that one runs first.
-bool Agent::lead(Unpaid& unpaid) {
+bool Agent::lead() {
   const std::unique_lock leading(leading_, std::try_to_lock);
   if (!leading || !threads_.are_others_waiting()) return false;
   std::optional<ExecTime> earliest;
@@ -166,9 +216,7 @@ bool Agent::lead(Unpaid& unpaid) {
       if (deadline) earliest = std::min(earliest.value_or(*deadline), *deadline);
   }
   if (is_empty || (earliest && *earliest <= now())) return false;
-  unpaid.pause();
   receive_until(earliest);
-  unpaid.go_on();
   wake_due();
   return true;
 }
@@ -195,32 +243,39 @@ void Agent::leave(std::list<Wait>::iterator wait) {
 // With several threads, the leader's thread looks from time to time whether all wait.
 bool Agent::wait(std::optional<ExecTime> deadline, const std::function<bool()>& is_ready,
                  const Block& block) {
-  Unpaid unpaid(*source_);
+  const Unpaid unpaid(*source_);
   const auto own = enter(deadline);
   const bool is_alone = !Threads::are_several();
   Patience patience{.seen = now()};
+  // What others compute during a call is charged with a CPU clock only.
+  const bool hears = !is_alone && source_->clock().kind == computer::ClockKind::kCpu;
+  ExecTime heard_at = patience.seen;
   bool ready = false;
   bool leads = true;
   while (!(ready = is_ready()) && !(deadline && now() >= *deadline)) {
-    unpaid.settle();
-    if (leads && lead(unpaid)) continue;
+    Unpaid::settle();
+    if (leads && lead()) continue;
     if (leads && !is_alone) call_leader();
     leads = is_alone;
     block(slice(deadline, patience), own->wake);
+    if (hears && is_fed() && now() - heard_at >= kBetweenLooks) {
+      take_arrived();
+      heard_at = now();
+    }
   }
   leave(own);
   return ready;
 }
 
 bool Agent::wait_for_thread(ExecTime deadline, const std::function<bool(Duration)>& block) {
-  Unpaid unpaid(*source_);
+  const Unpaid unpaid(*source_);
   if (block(Duration(0))) return true;
   const auto own = enter(deadline);
   call_leader();
   Patience patience{.seen = now()};
   bool is_given = false;
   while (!is_given && now() < deadline) {
-    unpaid.settle();
+    Unpaid::settle();
     // Nobody can wake it at its deadline.
     is_given = block(std::min(kLongestUnwoken, slice(deadline, patience)));
   }
@@ -240,6 +295,7 @@ void Agent::call_leader() {
 // As long as somebody waits; then until somebody does.
 void Agent::lead_for_others() {
   const Inside inside;
+  ::pthread_setname_np(::pthread_self(), link::kClientThread);
   Patience patience;
   for (;;) {
     bool is_any = false;
@@ -247,14 +303,14 @@ void Agent::lead_for_others() {
       const std::lock_guard lock(waits_mutex_);
       is_any = !waits_.empty();
     }
-    Unpaid unpaid(*source_);
-    if (lead(unpaid)) {
+    const Unpaid unpaid(*source_);
+    if (lead()) {
       patience = {};
       continue;
     }
     pollfd fd{leader_wake_, POLLIN, 0};
     const timespec time = to_timespec(patience.slice);
-    unpaid.settle();
+    Unpaid::settle();
     TETHER_REAL(ppoll)(&fd, 1, is_any ? &time : nullptr, nullptr);
     patience.slice = std::min(kLongestSlice, 2 * patience.slice);
     if (fd.revents == 0) continue;
@@ -278,15 +334,19 @@ void Agent::sleep_until(ExecTime deadline) {
       });
 }
 
-void Agent::tell_gap(const char* what) {
+bool Agent::tell(const std::string& line) {
   static std::mutex mutex;
   static std::set<std::string> told;
-  {
-    const std::lock_guard lock(mutex);
-    if (!told.insert(what).second) return;
-  }
-  say(std::string("the program uses ") + what +
-      ", which follows the machine's clock: its time is not that of the run");
+  const std::lock_guard lock(mutex);
+  const bool is_new = told.insert(line).second;
+  if (is_new) say(line);
+  return is_new;
+}
+
+void Agent::tell_gap(const char* what) {
+  if (!tell(std::string("the program uses ") + what +
+            ", which follows the machine's clock: its time is not that of the run"))
+    return;
   const std::lock_guard leading(leading_);
   static_cast<void>(
       vehicle_->annotate("as_is", std::string("{\"not_covered\": \"") + what + "\"}"));

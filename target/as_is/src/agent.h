@@ -1,7 +1,10 @@
 #pragma once
 
+#include "camera_files.h"
 #include "port.h"
+#include "serial.h"
 #include "threads.h"
+#include "unpaid.h"
 
 #include <atomic>
 #include <functional>
@@ -9,6 +12,8 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include <sys/types.h>
 
@@ -61,8 +66,30 @@ class Agent {
   /// To the flight controller. False: the UAV has none.
   bool send(std::span<const std::uint8_t> bytes);
 
+  /// The same, from a stream of frames.
+  void send_stream(std::span<const std::uint8_t> bytes);
+  bool has_controller() const;
+
+  bool is_camera(int fd) const { return cameras_.is_ours(fd); }
+  bool has_camera(unsigned number) { return number < cameras_.cameras().size(); }
+  /// What the functions of CameraFiles do, one at a time.
+  template <class Call>
+  auto with_cameras(Call call) {
+    const std::lock_guard leading(leading_);
+    const Unpaid unpaid(*source_);
+    return call(cameras_);
+  }
+  /// Whether something can arrive for the program.
+  bool is_fed() const { return port_.is_any() || cameras_.is_any(); }
+
+  /// A descriptor is closed, or there is another one of the same.
+  void forget(int fd);
+  void copy(int fd, int copy);
+
   /// The program uses something that this library does not bring to ET: says so, once for each.
   void tell_gap(const char* what);
+  /// Says something, once. False: it was said before.
+  static bool tell(const std::string& line);
 
   /// Whether the caller is in this process, and not in a child that shares its memory (vfork).
   bool is_here() const;
@@ -71,12 +98,17 @@ class Agent {
 
  private:
   Agent(std::unique_ptr<client::Vehicle> vehicle, client::TimeSource& source)
-      : vehicle_(std::move(vehicle)), source_(&source), factor_(source.clock().factor) {}
-  class Unpaid;
+      : vehicle_(std::move(vehicle)), source_(&source), factor_(source.clock().factor) {
+    add_cameras();
+  }
   /// Takes the next message, or lets ET reach that instant.
   bool receive_until(std::optional<ExecTime> until);
+  void tell_if_idle();
   struct Patience;
-  bool lead(Unpaid& unpaid);
+  bool lead();
+  void add_cameras();
+  std::optional<uav::CameraSample> take_image(const std::string& sensor);
+  void drop(const std::string& sensor, bool keeps_later_ones);
   [[noreturn]] void lead_for_others();
   std::list<Wait>::iterator enter(std::optional<ExecTime> deadline);
   void leave(std::list<Wait>::iterator wait);
@@ -90,7 +122,11 @@ class Agent {
   std::unique_ptr<client::Vehicle> vehicle_;
   client::TimeSource* source_;  // of the vehicle
   double factor_;               // ET per CPU time, or wall time
+  bool is_known_to_be_used_ = false;
   Port port_;
+  CameraFiles cameras_;  // with leading_
+  std::mutex stream_mutex_;
+  FrameStream stream_;
   Threads threads_;
   std::mutex leading_;
   std::mutex waits_mutex_;

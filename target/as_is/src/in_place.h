@@ -4,6 +4,7 @@
 #include "real.h"
 
 #include <cerrno>
+#include <optional>
 
 /// What the functions in place of the C library's have in common.
 #define TETHER_IN_PLACE extern "C" __attribute__((visibility("default")))
@@ -27,5 +28,8 @@ class KeepErrno {
 inline Agent* agent() {
   return Inside::is() ? nullptr : Agent::get();
 }
+
+/// What a system call for a device comes to, −1 with errno; none: it is for something else.
+std::optional<long> device_call(long number, const long (&arguments)[6]);
 
 }  // namespace tether::as_is

@@ -32,7 +32,7 @@ int wait_for(Agent& agent, std::optional<Duration> timeout, Look look, const Age
   const Inside inside;
   int result = look();
   if (result == 0 && timeout == Duration(0)) {
-    if (agent.port().is_any()) agent.take_arrived();
+    if (agent.is_fed()) agent.take_arrived();
     result = look();
   } else if (result == 0) {
     agent.wait(

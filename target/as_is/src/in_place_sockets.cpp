@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <cstdarg>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include <fcntl.h>
@@ -13,6 +14,7 @@
 #include <sys/socket.h>
 #include <sys/time.h>
 #include <sys/uio.h>
+#include <termios.h>
 #include <unistd.h>
 
 namespace tether::as_is {
@@ -24,10 +26,15 @@ Agent* agent_of(int socket) {
   return agent != nullptr && agent->port().is_ours(socket) ? agent : nullptr;
 }
 
+constexpr Duration kTenthOfSecond = std::chrono::milliseconds(100);
+
 /// How long a read of it waits; none: for ever.
 std::optional<Duration> timeout_of(int socket, int flags) {
   if ((flags & MSG_DONTWAIT) != 0 || (::fcntl(socket, F_GETFL) & O_NONBLOCK) != 0)
     return Duration(0);
+  // Of a terminal: VTIME, if it does not wait for a first byte.
+  if (termios mode{}; ::tcgetattr(socket, &mode) == 0)
+    return mode.c_cc[VMIN] > 0 ? std::nullopt : std::optional(mode.c_cc[VTIME] * kTenthOfSecond);
   timeval limit{};
   socklen_t size = sizeof limit;
   if (::getsockopt(socket, SOL_SOCKET, SO_RCVTIMEO, &limit, &size) != 0) return std::nullopt;
@@ -70,9 +77,26 @@ ssize_t read_when_ready(Agent& agent, int socket, int flags, Take take) {
   return result;
 }
 
-ssize_t send_bytes(Agent& agent, const void* bytes, std::size_t size) {
+ssize_t read_serial(Agent& agent, int fd, void* bytes, std::size_t size) {
+  const ssize_t got = read_when_ready(agent, fd, 0, [=]() -> ssize_t {
+    pollfd ready{fd, POLLIN, 0};
+    const timespec at_once{};
+    if (TETHER_REAL(ppoll)(&ready, 1, &at_once, nullptr) == 1)
+      return TETHER_REAL(read)(fd, bytes, size);
+    errno = EAGAIN;
+    return -1;
+  });
+  const bool is_timed_out = got < 0 && errno == EAGAIN && (::fcntl(fd, F_GETFL) & O_NONBLOCK) == 0;
+  return is_timed_out ? 0 : got;
+}
+
+ssize_t send_bytes(Agent& agent, int socket, const void* bytes, std::size_t size) {
   const Inside inside;
-  agent.send({static_cast<const std::uint8_t*>(bytes), size});
+  const std::span<const std::uint8_t> all(static_cast<const std::uint8_t*>(bytes), size);
+  if (agent.port().is_serial(socket))
+    agent.send_stream(all);
+  else
+    agent.send(all);
   return static_cast<ssize_t>(size);
 }
 
@@ -89,6 +113,25 @@ auto call_outside(int socket, Call call) {
   if (!is_outside(socket)) return call();
   const Threads::Outside outside;
   return call();
+}
+
+/// A descriptor ends.
+void forget(int fd) {
+  Agent* const agent = tether::as_is::agent();
+  if (agent == nullptr || !agent->is_here()) return;
+  const Inside inside;
+  const KeepErrno keep;
+  agent->forget(fd);
+}
+
+/// There is another descriptor of the same.
+int copied(int fd, int copy) {
+  Agent* const agent = tether::as_is::agent();
+  if (agent == nullptr || copy < 0 || !agent->is_here()) return copy;
+  const Inside inside;
+  const KeepErrno keep;
+  agent->copy(fd, copy);
+  return copy;
 }
 
 /// Whether a message to this address from this socket goes to the flight controller: then it is
@@ -150,8 +193,7 @@ TETHER_IN_PLACE int getpeername(int socket, sockaddr* __restrict address,
 }
 
 TETHER_IN_PLACE int close(int fd) {
-  if (Agent* const agent = tether::as_is::agent(); agent != nullptr && agent->is_here())
-    agent->port().forget(fd);
+  forget(fd);
   return TETHER_REAL(close)(fd);
 }
 
@@ -173,8 +215,13 @@ TETHER_IN_PLACE ssize_t recv(int socket, void* bytes, size_t size, int flags) {
 }
 
 TETHER_IN_PLACE ssize_t read(int fd, void* bytes, size_t size) {
-  if (agent_of(fd) == nullptr)
-    return call_outside(fd, [&] { return TETHER_REAL(read)(fd, bytes, size); });
+  if (const Agent* const any = tether::as_is::agent(); any && any->is_camera(fd)) {
+    errno = EINVAL;  // images are in buffers
+    return -1;
+  }
+  Agent* const agent = agent_of(fd);
+  if (agent == nullptr) return call_outside(fd, [&] { return TETHER_REAL(read)(fd, bytes, size); });
+  if (agent->port().is_serial(fd)) return read_serial(*agent, fd, bytes, size);
   return recvfrom(fd, bytes, size, 0, nullptr, nullptr);
 }
 
@@ -203,9 +250,7 @@ TETHER_IN_PLACE int recvmmsg(int socket, mmsghdr* messages, unsigned count, int 
 }
 
 TETHER_IN_PLACE int dup(int fd) {
-  const int copy = TETHER_REAL(dup)(fd);
-  if (Agent* const agent = agent_of(fd)) agent->port().copy(fd, copy);
-  return copy;
+  return copied(fd, TETHER_REAL(dup)(fd));
 }
 
 TETHER_IN_PLACE int fcntl64(int fd, int command, ...) {
@@ -214,9 +259,7 @@ TETHER_IN_PLACE int fcntl64(int fd, int command, ...) {
   const long argument = va_arg(list, long);
   va_end(list);
   const int result = TETHER_REAL(fcntl64)(fd, command, argument);
-  if (command != F_DUPFD && command != F_DUPFD_CLOEXEC) return result;
-  if (Agent* const agent = agent_of(fd)) agent->port().copy(fd, result);
-  return result;
+  return command == F_DUPFD || command == F_DUPFD_CLOEXEC ? copied(fd, result) : result;
 }
 
 TETHER_IN_PLACE int fcntl(int fd, int command, ...) {
@@ -228,19 +271,14 @@ TETHER_IN_PLACE int fcntl(int fd, int command, ...) {
 }
 
 TETHER_IN_PLACE int dup2(int fd, int copy) {
-  Agent* const agent = tether::as_is::agent();
-  if (agent != nullptr && copy != fd) agent->port().forget(copy);
-  const int result = TETHER_REAL(dup2)(fd, copy);
-  if (agent != nullptr && copy != fd) agent->port().copy(fd, result);
-  return result;
+  if (copy == fd) return TETHER_REAL(dup2)(fd, copy);
+  forget(copy);
+  return copied(fd, TETHER_REAL(dup2)(fd, copy));
 }
 
 TETHER_IN_PLACE int dup3(int fd, int copy, int flags) {
-  Agent* const agent = tether::as_is::agent();
-  if (agent != nullptr) agent->port().forget(copy);
-  const int result = TETHER_REAL(dup3)(fd, copy, flags);
-  if (agent != nullptr) agent->port().copy(fd, result);
-  return result;
+  forget(copy);
+  return copied(fd, TETHER_REAL(dup3)(fd, copy, flags));
 }
 
 TETHER_IN_PLACE ssize_t __recv_chk(int socket, void* bytes, size_t size, size_t, int flags) {
@@ -260,7 +298,7 @@ TETHER_IN_PLACE ssize_t sendto(int socket, const void* bytes, size_t size, int f
                                const sockaddr* to, socklen_t to_size) {
   Agent* const agent = agent_for(socket, to, to_size);
   if (agent == nullptr) return TETHER_REAL(sendto)(socket, bytes, size, flags, to, to_size);
-  return send_bytes(*agent, bytes, size);
+  return send_bytes(*agent, socket, bytes, size);
 }
 
 TETHER_IN_PLACE ssize_t send(int socket, const void* bytes, size_t size, int flags) {
@@ -282,7 +320,7 @@ TETHER_IN_PLACE ssize_t sendmsg(int socket, const msghdr* message, int flags) {
     const auto* begin = static_cast<const std::uint8_t*>(message->msg_iov[i].iov_base);
     bytes.insert(bytes.end(), begin, begin + message->msg_iov[i].iov_len);
   }
-  return send_bytes(*agent, bytes.data(), bytes.size());
+  return send_bytes(*agent, socket, bytes.data(), bytes.size());
 }
 
 TETHER_IN_PLACE int sendmmsg(int socket, mmsghdr* messages, unsigned count, int flags) {

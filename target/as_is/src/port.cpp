@@ -1,9 +1,12 @@
 #include "port.h"
 
 #include "real.h"
+#include "serial.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <cstring>
+#include <set>
 
 #include <arpa/inet.h>
 #include <unistd.h>
@@ -17,6 +20,7 @@ constexpr std::uint16_t kControllers[] = {14580, 18570};
 constexpr std::uint16_t kController = kControllers[0];
 constexpr std::uint16_t kUnbound = 1;  // ours, but not bound by the program
 constexpr std::uint16_t kCopy = 2;     // another descriptor of one that is ours
+constexpr std::uint16_t kSerial = 3;   // no socket
 
 std::uint16_t port_of(const sockaddr* address, socklen_t size) {
   if (address == nullptr) return 0;
@@ -80,19 +84,50 @@ void Port::adopt(int socket) {
 
 void Port::forget(int socket) {
   if (socket < 0 || static_cast<std::size_t>(socket) >= kSockets) return;
-  if (bound_[static_cast<std::size_t>(socket)].exchange(0) != 0) --count_;
+  const std::uint16_t bound = bound_[static_cast<std::size_t>(socket)].exchange(0);
+  if (bound != 0) --count_;
+  if (bound != kSerial) return;
+  const std::lock_guard lock(lines_mutex_);
+  const int other = lines_.extract(socket).mapped();
+  if (std::ranges::none_of(lines_, [other](const auto& line) { return line.second == other; }))
+    TETHER_REAL(close)(other);
+}
+
+int Port::open_serial(int flags) {
+  const SerialPort port = as_is::open_serial_port(flags);
+  if (port.program < 0 || static_cast<std::size_t>(port.program) >= kSockets) {
+    const int error = errno;
+    for (const int end : {port.program, port.other})
+      if (end >= 0) TETHER_REAL(close)(end);
+    errno = error;
+    return -1;
+  }
+  const std::lock_guard lock(lines_mutex_);
+  lines_[port.program] = port.other;
+  bound_[static_cast<std::size_t>(port.program)] = kSerial;
+  ++count_;
+  return port.program;
+}
+
+bool Port::is_serial(int fd) const {
+  return is_ours(fd) && bound_[static_cast<std::size_t>(fd)].load() == kSerial;
 }
 
 // It has one queue, so what is delivered to the first one is there for both.
 void Port::copy(int socket, int copy) {
   if (!is_ours(socket) || copy < 0 || static_cast<std::size_t>(copy) >= kSockets) return;
-  if (bound_[static_cast<std::size_t>(copy)].exchange(kCopy) == 0) ++count_;
+  const std::uint16_t kind = is_serial(socket) ? kSerial : kCopy;
+  if (kind == kSerial) {
+    const std::lock_guard lock(lines_mutex_);
+    lines_[copy] = lines_[socket];
+  }
+  if (bound_[static_cast<std::size_t>(copy)].exchange(kind) == 0) ++count_;
 }
 
 bool Port::believed(int socket, sockaddr* address, socklen_t* size) const {
   if (!is_ours(socket)) return false;
   const std::uint16_t port = bound_[static_cast<std::size_t>(socket)].load();
-  if (port == kUnbound || port == kCopy) return false;
+  if (port == kUnbound || port == kCopy || port == kSerial) return false;
   if (TETHER_REAL(getsockname)(socket, address, size) == 0) set_port(address, port);
   return true;
 }
@@ -100,7 +135,8 @@ bool Port::believed(int socket, sockaddr* address, socklen_t* size) const {
 // A socket that is not bound yet has no address to send to; the kernel gives it one.
 void Port::deliver(std::span<const std::uint8_t> bytes) {
   for (std::size_t socket = 0; socket < kSockets; ++socket) {
-    if (bound_[socket].load() == 0 || bound_[socket].load() == kCopy) continue;
+    const std::uint16_t bound = bound_[socket].load();
+    if (bound == 0 || bound == kCopy || bound == kSerial) continue;
     sockaddr_storage to{};
     socklen_t size = sizeof to;
     auto* const address = reinterpret_cast<sockaddr*>(&to);
@@ -112,6 +148,12 @@ void Port::deliver(std::span<const std::uint8_t> bytes) {
     (sender_, bytes.data(), bytes.size(), MSG_DONTWAIT, reinterpret_cast<const sockaddr*>(&target),
      sizeof target);
   }
+  // What finds no room is lost, as on a line.
+  const std::lock_guard lock(lines_mutex_);
+  std::set<int> others;
+  for (const auto& [fd, other] : lines_)
+    if (others.insert(other).second)
+      static_cast<void>(TETHER_REAL(write)(other, bytes.data(), bytes.size()));
 }
 
 void Port::believe(sockaddr* address, const socklen_t* size) const {

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <mutex>
 #include <span>
 
@@ -36,6 +37,10 @@ class Port {
   void forget(int socket);
   /// A descriptor of the same socket, if that is ours.
   void copy(int socket, int copy);
+  /// Opens a serial port to the flight controller, as open(). It is ours, and no socket.
+  int open_serial(int flags);
+  bool is_serial(int fd) const;
+
   /// The address that the program believes it has bound; false: it is not ours.
   bool believed(int socket, sockaddr* address, socklen_t* size) const;
 
@@ -53,6 +58,8 @@ class Port {
   std::atomic<int> count_ = 0;
   int sender_ = -1;
   sockaddr_in own_{};
+  std::mutex lines_mutex_;
+  std::map<int, int> lines_;  // by descriptor of a serial port: its other end
 };
 
 }  // namespace tether::as_is

@@ -24,6 +24,15 @@ std::optional<Measurement> Sampler::plan(std::uint64_t call, const link::ReadSen
   return measurement;
 }
 
+std::optional<std::uint64_t> Sampler::skip(const link::ReadSensor& read, SimTime t) {
+  SensorSchedule& schedule = sensors_[read.sensor].schedule;
+  schedule.set_queue(read.queue, t);
+  const auto newest = schedule.choose_available(t, true);
+  if (!newest || schedule.is_read(newest->index)) return std::nullopt;
+  schedule.mark_read(*newest);
+  return newest->index;
+}
+
 SimTime Sampler::next_due() const {
   SimTime due = SimTime::max();
   for (const Read& read : reads_)

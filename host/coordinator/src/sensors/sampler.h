@@ -47,6 +47,13 @@ class Sampler {
   /// The measurement for the read `call` with timestamp `t`. None if the read does not wait and no
   /// measurement is available. @pre the sensor exists, and is periodic if the read does not wait.
   std::optional<Measurement> plan(std::uint64_t call, const link::ReadSensor& read, SimTime t);
+  /// What was not read by `t` counts as read. The last such measurement; none: there is none.
+  /// @pre the sensor exists and is periodic
+  std::optional<std::uint64_t> skip(const link::ReadSensor& read, SimTime t);
+  /// When a read at `t` would get a measurement. @pre the sensor exists and is periodic.
+  SimTime next_available(std::size_t sensor, SimTime t) const {
+    return sensors_[sensor].schedule.choose(t, false).available_at;
+  }
   /// The first boundary at which a state must be captured; SimTime::max(): none.
   SimTime next_due() const;
   /// Captures what is due by `st`. @pre no later read has a timestamp before `earliest`.

@@ -7,14 +7,13 @@ namespace tether::coordinator {
 
 SensorSchedule::SensorSchedule(const uav::SensorTiming& timing, std::uint64_t seed,
                                std::uint64_t stream, uav::Driver driver)
-    : seed_(seed), stream_(stream), driver_(std::move(driver)) {
+    : seed_(seed), stream_(stream), driver_(driver) {
   std::visit([this](const auto& t) { timing_ = t; }, timing);
 }
 
 SensorSchedule SensorSchedule::in_free_running(const uav::SensorTiming& timing,
                                                uav::Driver driver) {
-  SensorSchedule schedule(uav::OnDemandTiming{uav::ConstantDelay{Duration(0)}}, 0, 0,
-                          std::move(driver));
+  SensorSchedule schedule(uav::OnDemandTiming{uav::ConstantDelay{Duration(0)}}, 0, 0, driver);
   if (const auto* periodic = std::get_if<uav::PeriodicTiming>(&timing))
     schedule.timing_ = Topic{*periodic};
   return schedule;
@@ -107,12 +106,15 @@ std::optional<Measurement> SensorSchedule::choose_available(SimTime t, bool late
   return newest ? std::optional(stamped({*newest, t, t}, t)) : std::nullopt;
 }
 
+// What a shorter queue has dropped does not come back.
 void SensorSchedule::set_queue(std::uint32_t queue, SimTime t) {
-  queue_ = queue;
   const auto* timing = std::get_if<uav::PeriodicTiming>(&timing_);
-  if (queue == 1 || queued_from_ || !timing) return;
-  const auto newest = newest_available(*timing, t, 0);
-  queued_from_ = newest ? newest->index : 0;
+  if (timing && queue > queue_) {
+    const auto newest = newest_available(*timing, t, 0);
+    const std::uint64_t first = queue_ > 1 ? oldest_unread(*timing, t) : newest ? newest->index : 0;
+    queued_from_ = std::max(queued_from_.value_or(0), first);
+  }
+  queue_ = queue;
 }
 
 // A driver delivers in order: a measurement that is available early waits for the one before it.

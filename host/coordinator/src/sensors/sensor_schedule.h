@@ -34,8 +34,8 @@ class SensorSchedule {
   /// topic. @pre the driver's jitter has no limit.
   static SensorSchedule in_free_running(const uav::SensorTiming& timing, uav::Driver driver = {});
 
-  /// From a read at `t` on, the newest `queue` measurements wait to be read. The first time that it
-  /// is more than one, those before the newest one at `t` are gone.
+  /// From a read at `t` on, the newest `queue` measurements wait to be read. When there are
+  /// more than before, what had no place until `t` is gone.
   void set_queue(std::uint32_t queue, SimTime t);
 
   /// The measurement for a read at `t`. Periodic: the newest that is available at `t` and not yet
@@ -46,6 +46,7 @@ class SensorSchedule {
   /// The measurement for a read at `t` that does not wait; none if none is available. @pre
   /// periodic.
   std::optional<Measurement> choose_available(SimTime t, bool latest) const;
+  bool is_read(std::uint64_t index) const { return index < unread_; }
   /// Marks it as read.
   void mark_read(const Measurement& measurement);
   /// The measurement whose content is delivered as measurement `index`.

@@ -163,6 +163,21 @@ TEST(SensorSchedule, AQueueAgreesWithItsDefinitionUnderRandomDelays) {
   }
 }
 
+// A program may change its queue at each read; what had no place is not captured any more.
+TEST(SensorSchedule, AQueueThatBecomesLongerHasNothingOfBefore) {
+  SensorSchedule schedule = camera(milliseconds(10));
+  KeyedRandom random({.seed = 7});
+  SimTime t{};
+  for (int i = 0; i < 500; ++i) {
+    t += milliseconds(random.bits() % 200);
+    const std::uint64_t kept = schedule.first_readable(t);
+    schedule.set_queue(1 + random.bits() % 5, t);
+    const Measurement got = schedule.choose(t, false);
+    ASSERT_GE(got.index, kept) << i;
+    if (got.available_at <= t) schedule.mark_read(got);
+  }
+}
+
 // Against the definition: what is lost is not there for any kind of read, and takes no place in the
 // queue; the rest is as without a driver.
 TEST(SensorSchedule, LostSamplesAreNotThereForAnyRead) {

@@ -101,6 +101,7 @@ void members(auto& io, Maybe<Interaction> auto& m) {
   io.optional("available_at_ns", m.available_at);
   io.optional("sample_stamp_ns", m.sample_stamp);
   io.optional("repeated_index", m.repeated_index);
+  io.optional("skipped_to", m.skipped_to);
   if (io.has("seen_anchors", m.seen_anchors.has_value()))
     io.list("seen_anchors", io.value_of(m.seen_anchors));
   io.optional("effect_at_ns", m.effect_at);

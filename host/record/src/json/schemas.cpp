@@ -26,6 +26,8 @@ const Schema kInteractionSchema{"tether.Interaction", R"json({
     "sample_stamp_ns": {"type": "integer", "description": "time of the sample that the SUT saw"},
     "repeated_index": {"type": "integer", "minimum": 0,
                        "description": "the content is that of this earlier measurement"},
+    "skipped_to": {"type": "integer", "minimum": 0,
+                   "description": "the last measurement that counts as read without being read"},
     "seen_anchors": {
       "type": "array",
       "description": "of an image: each anchor of which pixels are visible",
@@ -78,7 +80,7 @@ const Schema kInteractionSchema{"tether.Interaction", R"json({
     },
     "command_latency_ns": {"type": "integer", "description": "until it arrived, if not constant"},
     "sleep_until_ns": {"type": "integer", "description": "ET at which the SUT asked to be woken"},
-    "receive_until_ns": {"type": "integer", "description": "ET of the request + timeout"},
+    "receive_until_ns": {"type": "integer", "description": "ET of the request + timeout; less, if it also waited for a measurement"},
     "received": {
       "type": "object",
       "description": "the message that was received",

@@ -216,6 +216,13 @@ StringMap changed(const std::string& name, const std::string& from, const std::s
   return values;
 }
 
+TEST(JsonMetadata, WhatWasSkippedIsReadBack) {
+  Interaction skip = vain_interaction();
+  skip.skipped_to = 7;
+  EXPECT_EQ(from_json<Interaction>(json_of(skip)).skipped_to, 7U);
+  EXPECT_FALSE(from_json<Interaction>(json_of(vain_interaction())).skipped_to);
+}
+
 // Records of earlier versions do not have them.
 TEST(JsonMetadata, DriversAndRadiosByDistributionAreReadBack) {
   Interaction read = sensor_interaction();

@@ -135,6 +135,21 @@ std::uint32_t InteractingVehicle::queue_of(std::string_view sensor) const {
              : queues_[static_cast<std::size_t>(found - catalogue_.sensors.data())].load();
 }
 
+Result<std::uint32_t> InteractingVehicle::find_periodic(std::string_view sensor) const {
+  const uav::SensorDescription* const found = catalogue_.find_sensor(sensor);
+  if (found == nullptr || found->rate_hz <= 0.0)
+    return Failure{Failure::Kind::kInvalid,
+                   "'" + std::string(sensor) + "' is no periodic sensor of this UAV"};
+  return static_cast<std::uint32_t>(found - catalogue_.sensors.data());
+}
+
+Status InteractingVehicle::skip(std::string_view sensor) {
+  const auto index = find_periodic(sensor);
+  if (!index) return index.failure();
+  return status_of(
+      interact(link::ReadSensor{.sensor = *index, .queue = queues_[*index], .skips = true}));
+}
+
 Result<uav::Sample> InteractingVehicle::read_any(std::string_view sensor, uav::SensorKind kind,
                                                  Read read) {
   const uav::SensorDescription* const found = catalogue_.find_sensor(sensor);
@@ -206,14 +221,31 @@ Status InteractingVehicle::send(std::string_view to, std::span<const std::uint8_
 }
 
 Result<RadioMessage> InteractingVehicle::receive(Duration timeout) {
+  auto message = receive_or_measure(timeout, {});
+  if (!message) return message.failure();
+  return std::move(**message);
+}
+
+// Without a message, a reply before the timeout is there for a sensor.
+Result<std::optional<RadioMessage>> InteractingVehicle::receive_or_measure(
+    Duration timeout, std::span<const std::string_view> sensors) {
   const Duration longest{link::kMaxTimestampNs / 2};
-  auto reply = interact(link::ReceiveMessage{std::clamp(timeout, Duration::zero(), longest)});
+  link::ReceiveMessage receive{std::clamp(timeout, Duration::zero(), longest)};
+  for (const std::string_view name : sensors) {
+    const auto index = find_periodic(name);
+    if (!index) return index.failure();
+    receive.sensors.push_back(*index);
+  }
+  // Reading a scripted clock takes its time, so only who waits for sensors reads it.
+  const ExecTime timed_out_at = sensors.empty() ? ExecTime{} : now() + receive.timeout;
+  auto reply = interact(std::move(receive));
   if (!reply) return reply.failure();
+  if (!reply->message && reply->resume_at < timed_out_at) return std::optional<RadioMessage>();
   if (!reply->message)
     return Failure{Failure::Kind::kNothingYet, "no message has arrived by the timeout"};
   link::RadioMessage& message = *reply->message;
-  return RadioMessage{std::move(message.from), message.sent_at, message.arrived_at,
-                      std::move(message.bytes)};
+  return std::optional(RadioMessage{std::move(message.from), message.sent_at, message.arrived_at,
+                                    std::move(message.bytes)});
 }
 
 // --- commands and the end -----------------------------------------------------------------------

@@ -41,6 +41,7 @@ class InteractingVehicle : public Vehicle {
   const uav::Catalogue& catalogue() const final { return catalogue_; }
   Status set_queue(std::string_view sensor, std::uint32_t depth) final;
   std::uint32_t queue_of(std::string_view sensor) const final;
+  Status skip(std::string_view sensor) final;
   Result<uav::Sample> read_any(std::string_view sensor, uav::SensorKind kind, Read read) final;
   Result<uav::BatterySample> read_battery() final;
   Status command_velocity(const uav::VelocityCommand& command) final;
@@ -48,6 +49,8 @@ class InteractingVehicle : public Vehicle {
   const std::vector<std::string>& peers() const final { return peers_; }
   Status send(std::string_view to, std::span<const std::uint8_t> bytes) final;
   Result<RadioMessage> receive(Duration timeout) final;
+  Result<std::optional<RadioMessage>> receive_or_measure(
+      Duration timeout, std::span<const std::string_view> sensors) final;
   Status finish(bool reached_goal, std::string_view outcome, std::string_view details_json) final;
 
  protected:
@@ -79,6 +82,7 @@ class InteractingVehicle : public Vehicle {
   Result<uav::Sample> take_sample(link::Reply reply, const uav::SensorDescription& sensor,
                                   Read read);
   Failure no_such_sensor(std::string_view sensor, uav::SensorKind kind) const;
+  Result<std::uint32_t> find_periodic(std::string_view sensor) const;
 
   uav::Catalogue catalogue_;
   std::vector<std::string> peers_;

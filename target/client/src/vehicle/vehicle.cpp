@@ -22,6 +22,10 @@ Status Vehicle::set_queue(std::string_view, std::uint32_t) {
   return Failure{Failure::Kind::kInvalid, "this vehicle keeps the newest measurement only"};
 }
 
+Status Vehicle::skip(std::string_view) {
+  return Failure{Failure::Kind::kInvalid, "this vehicle keeps the newest measurement only"};
+}
+
 Result<uav::BatterySample> Vehicle::read_battery() {
   return Failure{Failure::Kind::kInvalid, "the battery of this vehicle cannot be read"};
 }
@@ -37,6 +41,11 @@ Status Vehicle::command(const uav::Setpoint& setpoint) {
 
 Result<RadioMessage> Vehicle::receive(Duration) {
   return kNoRadio;
+}
+
+Result<std::optional<RadioMessage>> Vehicle::receive_or_measure(Duration,
+                                                                std::span<const std::string_view>) {
+  return Failure{Failure::Kind::kInvalid, "this vehicle waits for one thing at a time"};
 }
 
 Duration most_apart(const uav::Catalogue& catalogue, const std::vector<std::string_view>& sensors) {

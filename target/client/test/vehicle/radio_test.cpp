@@ -21,7 +21,7 @@ class RadioOfVehicle : public testing::Test {
   std::vector<link::Message> answer(const link::Request& request) {
     link::Reply reply{request.sequence, request.issued_at, std::nullopt};
     if (const auto* receive = std::get_if<link::ReceiveMessage>(&request.body)) {
-      reply.resume_at += receive->timeout;
+      reply.resume_at += ready_after_.value_or(receive->timeout);
       reply.message = incoming_;
     }
     return {reply};
@@ -35,6 +35,7 @@ class RadioOfVehicle : public testing::Test {
   }
 
   std::optional<link::RadioMessage> incoming_;
+  std::optional<Duration> ready_after_;  // a sensor
   std::optional<ScriptedCoordinator> coordinator_;
 };
 
@@ -81,6 +82,34 @@ TEST_F(RadioOfVehicle, ReceivesNothingByTheTimeout) {
   EXPECT_EQ(receiver->receive(-milliseconds(3)).failure().kind, Failure::Kind::kNothingYet);
   EXPECT_EQ(std::get<link::ReceiveMessage>(coordinator_->requests().at(1).body).timeout,
             Duration(0));
+}
+
+// Whether it was for a sensor follows from the time of the reply.
+TEST_F(RadioOfVehicle, AWaitForASensorEndsWithNothingWhenThatIsReady) {
+  const auto receiver = vehicle();
+  const std::vector<std::string_view> sensors{"camera"};
+  ready_after_ = milliseconds(1);
+  const auto nothing = receiver->receive_or_measure(milliseconds(30), sensors);
+  ASSERT_TRUE(nothing);
+  EXPECT_FALSE(*nothing);
+  EXPECT_THAT(std::get<link::ReceiveMessage>(coordinator_->requests().at(0).body).sensors,
+              testing::SizeIs(1));
+  ready_after_.reset();
+  EXPECT_EQ(receiver->receive_or_measure(milliseconds(30), sensors).failure().kind,
+            Failure::Kind::kNothingYet);
+  const std::vector<std::string_view> none{"no such sensor"};
+  EXPECT_EQ(receiver->receive_or_measure(milliseconds(30), none).failure().kind,
+            Failure::Kind::kInvalid);
+}
+
+TEST_F(RadioOfVehicle, SkipsWhatASensorHas) {
+  const auto skipper = vehicle();
+  ASSERT_TRUE(skipper->set_queue("camera", 7));
+  EXPECT_TRUE(skipper->skip("camera"));
+  const auto read = std::get<link::ReadSensor>(coordinator_->requests().at(0).body);
+  EXPECT_TRUE(read.skips);
+  EXPECT_EQ(read.queue, 7U);
+  EXPECT_EQ(skipper->skip("imu").failure().kind, Failure::Kind::kInvalid) << "on demand";
 }
 
 TEST_F(RadioOfVehicle, RefusesAMessageFromTheFuture) {

@@ -93,6 +93,8 @@ struct ReadSensor {
   /// Periodic sensors: of so many of the newest measurements, the oldest that was not read. The
   /// queue fills from the first such read on.
   std::uint32_t queue = 1;
+  /// Periodic sensors: reply at once, without a sample; what has arrived counts as read.
+  bool skips = false;
 };
 /// Follow one set-point that is a velocity in the heading frame.
 struct SetVelocity {
@@ -131,6 +133,9 @@ struct SendMessage {
 /// Wait for the next message, until `timeout` after the request at most.
 struct ReceiveMessage {
   Duration timeout{0};  ///< 0: of those that have arrived
+  /// And at most until one of these periodic sensors has a measurement that was not read. It is
+  /// read by a request of its own.
+  std::vector<std::uint32_t> sensors{};
 };
 /// Read the battery, if the catalogue has one. The reply is due at once.
 struct ReadBattery {};

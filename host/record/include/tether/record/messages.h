@@ -89,6 +89,9 @@ struct Interaction {
   /// `sample_state_at` are that measurement's, `available_at` is that of `sample_index`.
   std::optional<std::uint64_t> repeated_index{};
 
+  /// Asked for no measurement, but to count those that were available as read, up to this one.
+  std::optional<std::uint64_t> skipped_to{};
+
   /// Of an image: the anchors that are seen in it; those that are hidden or outside are missing.
   /// None if the simulator does not know this, and in records of Tether 0.1.0: then an anchor's
   /// true region is the projection of its shape, whatever is in front of it.
@@ -104,7 +107,7 @@ struct Interaction {
   std::optional<ExecTime> sleep_until;  ///< kind "sleep": requested end of the sleep
 
   // For kind "receive".
-  std::optional<ExecTime> receive_until{};    ///< request_at + timeout
+  std::optional<ExecTime> receive_until{};    ///< request_at + timeout, or when a sensor is ready
   std::optional<ReceivedMessage> received{};  ///< none: no message had arrived by then
 
   std::optional<BatteryReading> battery{};  ///< kind "battery": at st_at_release

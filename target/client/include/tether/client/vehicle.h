@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -60,6 +61,10 @@ class Vehicle {
   /// How many measurements of the sensor can wait. 1 if there is no such sensor.
   virtual std::uint32_t queue_of(std::string_view) const { return 1; }
 
+  /// What has arrived of a periodic sensor and was not read is lost. Takes no ET. Fails with
+  /// kInvalid if the UAV has no such sensor, or if the vehicle is not simulated.
+  virtual Status skip(std::string_view sensor);
+
   /// A measurement of a sensor: a sample of that kind. Fails with kInvalid if the UAV has no sensor
   /// of that kind and name.
   virtual Result<uav::Sample> read_any(std::string_view sensor, uav::SensorKind kind,
@@ -103,6 +108,11 @@ class Vehicle {
   /// in the scenario, and of one UAV in the order in which it sent them. kNothingYet if none has
   /// arrived by the timeout.
   virtual Result<RadioMessage> receive(Duration timeout);
+  /// The same, but it also ends, with nothing, when one of these periodic sensors has a measurement
+  /// that was not read: at once, if there is one already. Fails as well with kInvalid if one is no
+  /// periodic sensor of the UAV, or if the vehicle is not simulated.
+  virtual Result<std::optional<RadioMessage>> receive_or_measure(
+      Duration timeout, std::span<const std::string_view> sensors);
 
   /// Writes a message into the record, without waiting for the coordinator. With a serial vehicle
   /// it takes no ET, but can wait for another thread's call. `json` is one JSON object.
