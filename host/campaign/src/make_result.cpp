@@ -53,9 +53,13 @@ void check_companion(const record::Record& record, SutResult& sut, std::vector<W
     return m.uav == sut.uav && m.to_controller && m.outcome == record::kDelivered &&
            !m.name.empty();
   };
-  if (std::ranges::none_of(record.autopilot, is_sent)) {
+  const auto is_call = [&](const auto& logged) {
+    return logged.message.uav == sut.uav && logged.message.kind != record::kFinish;
+  };
+  const bool has_sent = std::ranges::any_of(record.autopilot, is_sent);
+  if (!has_sent && std::ranges::none_of(record.interactions, is_call)) {
     sut.reached_goal = false;
-    sut.outcome = "it sent no message to its flight controller";
+    sut.outcome = "it did nothing with its UAV";
     return;
   }
   const record::GroundTruth *first = nullptr, *last = nullptr;
@@ -72,6 +76,7 @@ void check_companion(const record::Record& record, SutResult& sut, std::vector<W
   const auto doubt = [&](const std::string& what) {
     warnings.push_back({Consequence::kDoubtful, {}, "UAV '" + sut.uav + "'", what});
   };
+  if (!has_sent) return doubt("has a flight controller to which its program sent no message");
   if (!has_moved) doubt("never left its start, although its program says that it reached its goal");
   if (last != nullptr && last->clearance_m && *last->clearance_m > kAway_m)
     doubt(

@@ -290,7 +290,11 @@ TEST_F(MakeResult, ACompanionHasFlownOnlyIfItHasSentSomething) {
   record.header.suts[0].controller.emplace().name = "built-in";
   TrialResult result = make(record, kReached);
   EXPECT_EQ(result.outcome, Outcome::kGoalMissed);
-  EXPECT_THAT(result.reason, HasSubstr("it sent no message to its flight controller"));
+  EXPECT_THAT(result.reason, HasSubstr("it did nothing with its UAV"));
+  record::Interaction& read = record.interactions.emplace_back().message;
+  read.uav = "uav1";
+  read.kind = record::kSensor;
+  EXPECT_THAT(to_line(make(record, kReached).warnings.at(0)), HasSubstr("sent no message"));
   record::AutopilotMessage& sent = record.autopilot.emplace_back().message;
   sent.uav = "uav1";
   sent.to_controller = true;
