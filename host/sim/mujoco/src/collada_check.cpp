@@ -67,9 +67,32 @@ class Nodes {
   int nodes_ = 0;
 };
 
+// Assimp stops at a comment in <vertices>, and at an image that has no file.
+bool mend(tinyxml2::XMLDocument& document, tinyxml2::XMLNode& parent) {
+  bool is_changed = false;
+  for (tinyxml2::XMLNode *child = parent.FirstChild(), *next = nullptr; child; child = next) {
+    next = child->NextSibling();
+    if (child->ToComment() != nullptr) {
+      parent.DeleteChild(child);
+      is_changed = true;
+      continue;
+    }
+    XMLElement* const element = child->ToElement();
+    if (element == nullptr) continue;
+    is_changed = mend(document, *element) || is_changed;
+    if (std::string_view(element->Name()) != "image") continue;
+    XMLElement* file = element->FirstChildElement("init_from");
+    if (file != nullptr && (file->GetText() != nullptr || file->FirstChildElement())) continue;
+    if (file == nullptr) file = element->InsertNewChildElement("init_from");
+    file->SetText("no file");
+    is_changed = true;
+  }
+  return is_changed;
+}
+
 }  // namespace
 
-void check_collada(const std::string& text, const std::filesystem::path& file) {
+void check_collada(std::string& text, const std::filesystem::path& file) {
   tinyxml2::XMLDocument document;
   if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
     refuse(file, document.ErrorLineNum(),
@@ -78,6 +101,10 @@ void check_collada(const std::string& text, const std::filesystem::path& file) {
   Nodes nodes(file);
   nodes.collect(*document.RootElement());
   nodes.walk_scenes(*document.RootElement());
+  if (!mend(document, document)) return;
+  tinyxml2::XMLPrinter printer(nullptr, true);
+  document.Print(&printer);
+  text = printer.CStr();
 }
 
 }  // namespace tether::sim

@@ -82,6 +82,11 @@ protocol::Open make_open(const World& world, const WarningSink& warn) {
           {world.file.string()},
           "<wind>",
           "has no effect: only the embedded simulator simulates wind"});
+  if (world.gravity_x_m_s2 != 0.0 || world.gravity_y_m_s2 != 0.0)
+    warn({Consequence::kBehavesDifferent,
+          {world.file.string()},
+          "<gravity>",
+          "points straight down: only the embedded simulator simulates a tilted one"});
   const ViewSize size = largest_view(world);
   protocol::Open open;
   open.world_name = world.name;

@@ -11,14 +11,16 @@ namespace tether::sim {
 class ModelPath {
  public:
   /// @param world the world's or UAV's own file
-  /// @param model_folders searched for model:// after the surroundings of the files
-  ModelPath(const std::filesystem::path& world, std::vector<std::filesystem::path> model_folders);
+  /// @param model_folders searched for model:// after the environment's
+  ModelPath(const std::filesystem::path& world,
+            const std::vector<std::filesystem::path>& model_folders);
 
   /// The file or folder that `uri` means in the file `from`; none if there is nothing.
   ///
-  /// A path is relative to `from`, else to the world. model://NAME is searched for in models/ and
-  /// ../models/ next to these two, beside them, in the model folders, in the folders of
-  /// GZ_SIM_RESOURCE_PATH, IGN_GAZEBO_RESOURCE_PATH, GAZEBO_MODEL_PATH and SDF_PATH, and in Fuel's
+  /// A path is relative to `from`, else to the world; one name alone is also that of a model.
+  /// model://NAME is searched for in models/ and
+  /// ../models/ next to these two, beside them, in the folders of GZ_SIM_RESOURCE_PATH,
+  /// IGN_GAZEBO_RESOURCE_PATH, GAZEBO_MODEL_PATH and SDF_PATH, in the model folders, and in Fuel's
   /// caches (GZ_FUEL_CACHE_PATH, IGN_FUEL_CACHE_PATH, ~/.gz/fuel, ~/.ignition/fuel), which are the
   /// only place for https://HOST/1.0/OWNER/models/NAME[/VERSION[/files/FILE]]. Without VERSION, the
   /// highest one in the cache is meant.

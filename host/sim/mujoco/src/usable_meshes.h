@@ -1,0 +1,13 @@
+#pragma once
+
+#include "mesh_file.h"
+
+#include <tether/sim/world.h>
+
+namespace tether::sim {
+
+/// Leaves out the visuals and collisions of models whose mesh cannot be used, with a warning each,
+/// unless the world is read strictly: then make_scene and make_physics_model refuse them.
+void leave_out_unusable_meshes(World& world, const MeshFiles& meshes, const WarningSink& warn);
+
+}  // namespace tether::sim
