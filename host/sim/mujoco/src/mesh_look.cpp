@@ -160,15 +160,17 @@ MeshLook read_look(const aiScene& scene, const aiMaterial& material, const MeshG
 }
 
 std::shared_ptr<const raster::Texture> palette() {
-  auto texture = std::make_shared<raster::Texture>(raster::Texture{kPaletteSize, kPaletteSize, {}});
-  for (int i = 0; i < kPaletteSize * kPaletteSize; ++i) {
+  static const std::shared_ptr<const raster::Texture> colours = [] {
+    raster::Texture texture{kPaletteSize, kPaletteSize, {}};
     const auto byte = [](int step) {
       return static_cast<std::uint8_t>((step * 255 + kSteps / 2) / (kSteps - 1));
     };
-    texture->rgba.insert(texture->rgba.end(), {byte(i / kSteps / kSteps), byte(i / kSteps % kSteps),
+    for (int i = 0; i < kPaletteSize * kPaletteSize; ++i)
+      texture.rgba.insert(texture.rgba.end(), {byte(i / kSteps / kSteps), byte(i / kSteps % kSteps),
                                                byte(i % kSteps), std::uint8_t{255}});
-  }
-  return texture;
+    return std::make_shared<const raster::Texture>(std::move(texture));
+  }();
+  return colours;
 }
 
 std::array<float, 2> place_in_palette(const aiMesh& mesh, std::span<const unsigned> corners) {

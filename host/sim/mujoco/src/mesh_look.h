@@ -31,7 +31,7 @@ MeshLook read_look(const aiScene& scene, const aiMaterial& material, const MeshG
 /// format has no materials or says so (glTF). Gazebo ignores those of other files.
 bool has_vertex_colours(const aiScene& scene, const aiMesh& mesh,
                         const std::filesystem::path& file);
-/// Colours of vertices are drawn by a picture that has every colour, 64 steps for each of red,
+/// Colours of vertices are drawn by one picture that has every colour, 64 steps for each of red,
 /// green and blue: a triangle is where its mean colour is.
 std::shared_ptr<const raster::Texture> palette();
 std::array<float, 2> place_in_palette(const aiMesh& mesh, std::span<const unsigned> corners);

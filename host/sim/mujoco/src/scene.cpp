@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <map>
+#include <memory>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -52,6 +53,19 @@ struct PartNumbers {
   std::size_t material;
 };
 
+constexpr Vec3 kWhite{1.0, 1.0, 1.0};
+
+raster::Material tinted(raster::Material material, const Material& tint) {
+  const auto scale = [](raster::Rgb& colour, const Vec3& by) {
+    const raster::Rgb factor = rgb(by);
+    for (std::size_t i = 0; i < 3; ++i) colour[i] = std::min(1.0F, colour[i] * factor[i]);
+  };
+  scale(material.diffuse, tint.diffuse_rgb);
+  scale(material.ambient, tint.ambient_rgb);
+  material.alpha *= static_cast<float>(tint.alpha);
+  return material;
+}
+
 class SceneBuilder {
  public:
   SceneBuilder(const MeshFiles& mesh_files, bool is_strict, const WarningSink& warn)
@@ -67,7 +81,7 @@ class SceneBuilder {
       instance.entity = entity;
       const auto* mesh = std::get_if<MeshGeometry>(&visual.geometry);
       if (mesh != nullptr && visual.has_look_of_mesh) {
-        add_parts(*mesh, visual.material.alpha, instance);
+        add_parts(*mesh, visual.material, instance);
         continue;
       }
       instance.mesh = mesh_of(visual);
@@ -116,7 +130,7 @@ class SceneBuilder {
   static float factor(double attenuation) { return static_cast<float>(std::min(attenuation, 1e6)); }
 
   // A mesh with the looks of its file: an instance for each of its materials.
-  void add_parts(const MeshGeometry& geometry, double alpha, raster::Instance instance) {
+  void add_parts(const MeshGeometry& geometry, const Material& tint, raster::Instance instance) {
     read_named(geometry.named_at, [&] {
       const auto [known, is_new] = looks_.try_emplace(key_of(geometry));
       if (is_new)
@@ -125,10 +139,9 @@ class SceneBuilder {
         count_triangles(geometry, parts_.meshes[mesh]);
         instance.mesh = mesh;
         instance.material = material;
-        if (alpha < 1.0) {
+        if (tint.alpha != 1.0 || tint.diffuse_rgb != kWhite || tint.ambient_rgb != kWhite) {
           instance.material = parts_.materials.size();
-          parts_.materials.push_back(parts_.materials[material]);
-          parts_.materials.back().alpha *= static_cast<float>(alpha);
+          parts_.materials.push_back(tinted(parts_.materials[material], tint));
         }
         parts_.instances.push_back(instance);
       }
@@ -138,8 +151,12 @@ class SceneBuilder {
   void add_part(MeshPart& part, std::vector<PartNumbers>& numbers) {
     raster::Material material = material_of(part.look.material);
     if (part.look.picture) {
-      add_texture(*part.look.picture);
-      material.texture = parts_.textures.size() - 1;
+      const auto [known, is_new] = pictures_.try_emplace(part.look.picture);
+      if (is_new) {
+        add_texture(*part.look.picture);
+        known->second = parts_.textures.size() - 1;
+      }
+      material.texture = known->second;
     }
     numbers.push_back({add_mesh(std::move(part.mesh)), parts_.materials.size()});
     parts_.materials.push_back(material);
@@ -255,6 +272,7 @@ class SceneBuilder {
   bool has_halved_ = false;
   std::map<std::tuple<MeshKey, double, double, TextureRepeat, bool>, std::size_t> meshes_;
   std::map<MeshKey, std::vector<PartNumbers>> looks_;
+  std::map<std::shared_ptr<const raster::Texture>, std::size_t> pictures_;  // never walked through
   std::map<std::filesystem::path, std::optional<std::size_t>> textures_;
 };
 

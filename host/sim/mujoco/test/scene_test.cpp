@@ -117,8 +117,10 @@ TEST(SceneTest, AMeshWithTheLookOfItsFileIsAnInstanceForEachMaterial) {
   visuals.resize(1);
   visuals[0].geometry = mesh;
   visuals[0].has_look_of_mesh = true;
+  visuals[0].material.diffuse_rgb = visuals[0].material.ambient_rgb = {1.0, 1.0, 1.0};
   visuals.push_back(visuals[0]);
   visuals[1].material.alpha = 0.5;
+  visuals[1].material.diffuse_rgb = {0.5, 0.5, 0.5};
   const raster::SceneParts scene = make_scene(world, no_warnings());
   ASSERT_EQ(scene.instances.size(), 4U + world.uavs[0].body.visuals.size());
   EXPECT_EQ(scene.materials[scene.instances[0].material].diffuse, (raster::Rgb{1.0F, 0.0F, 0.0F}));
@@ -126,6 +128,7 @@ TEST(SceneTest, AMeshWithTheLookOfItsFileIsAnInstanceForEachMaterial) {
   EXPECT_EQ(scene.materials[scene.instances[1].material].alpha, 1.0F);
   EXPECT_EQ(scene.instances[2].mesh, scene.instances[0].mesh) << "read once";
   EXPECT_EQ(scene.materials[scene.instances[3].material].alpha, 0.5F);
+  EXPECT_EQ(scene.materials[scene.instances[3].material].diffuse, (raster::Rgb{0.0F, 0.0F, 0.5F}));
 }
 
 TEST(SceneTest, LightsKeepTheirKindAndDirection) {

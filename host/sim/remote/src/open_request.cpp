@@ -35,7 +35,8 @@ std::vector<VisualMaterial> materials_of(const World& world) {
   }
   for (const Model& model : world.models) {
     for (const Link& link : model.links) {
-      for (const Visual& v : link.visuals) add_material(model.name, link.name, v, materials);
+      for (const Visual& v : link.visuals)
+        if (!v.material.is_of_script) add_material(model.name, link.name, v, materials);
     }
   }
   return materials;

@@ -86,6 +86,7 @@ struct Material {
   FileLocation albedo_map_at{};  ///< where the world names the texture; empty: in no file
   TextureRepeat texture_repeat = TextureRepeat::kPerMetre;  ///< SDF's default: kPerFace
   bool is_double_sided = false;                             ///< also seen from inside
+  bool is_of_script = false;  ///< of a <script>, which Gazebo 11 reads itself
 };
 
 struct Visual {
@@ -94,7 +95,8 @@ struct Visual {
   Geometry geometry;
   Material material;
   bool cast_shadows = true;
-  /// Looks as the file of its mesh says; of `material`, only `alpha` counts.
+  /// Looks as the file of its mesh says, times the `alpha`, `diffuse_rgb` and `ambient_rgb` of
+  /// `material`.
   bool has_look_of_mesh = false;
 };
 

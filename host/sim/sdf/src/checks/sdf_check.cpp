@@ -312,6 +312,10 @@ class Walk {
     check_distortion_center(source_, parent, element, warn_);
     // These two are read, and warned of, where a UAV is put together.
     if (!kLeaves.contains(name)) visit_children(element);
+    // Of what it consisted, nothing may be left.
+    if (name == "model" && parent != "sdf" && !element->HasElement("link") &&
+        !element->HasElement("model"))
+      return false;
     return true;
   }
 

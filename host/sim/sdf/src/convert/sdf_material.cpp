@@ -105,6 +105,7 @@ bool read_script_material(const SdfSource& source, const sdf::ElementPtr& script
   material.emissive_rgb = named.emissive_rgb.value_or(Vec3{});
   material.alpha = named.alpha.value_or(1.0);
   material.is_double_sided = named.is_double_sided;
+  material.is_of_script = true;
   if (named.texture.empty()) return true;
   material.texture_repeat_x = 1.0 / named.texture_scale_x;
   material.texture_repeat_y = 1.0 / named.texture_scale_y;
@@ -166,6 +167,7 @@ void read_look(const SdfSource& source, const sdf::Visual& visual, const Warning
   const bool is_given =
       visual.Material() != nullptr && read_material(source, *visual.Material(), warn, out.material);
   out.has_look_of_mesh = !is_given && std::holds_alternative<MeshGeometry>(out.geometry);
+  if (out.has_look_of_mesh) out.material.diffuse_rgb = out.material.ambient_rgb = {1.0, 1.0, 1.0};
   out.material.alpha *= 1.0 - double{visual.Transparency()};
 }
 

@@ -75,6 +75,7 @@ void add_named(const std::string& text, const std::vector<fs::path>& folders,
 
 std::vector<fs::path> mesh_companions(const fs::path& mesh) {
   std::vector<fs::path> found;
+  if (lower(mesh.extension().string()) == ".stl") return found;  // names no files
   const std::vector<fs::path> folders = folders_around(mesh);
   add_named(lower(os::read_file(mesh, kLargestMesh)), folders, found);
   for (std::size_t i = 0; i < found.size(); ++i)

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const std::string kWithout =
+constexpr const char* kWithout =
     ". To fly without it, leave out --strict (in a UAV's model: use --tolerant)";
 
 std::string variable(const char* name) {
@@ -195,7 +195,7 @@ std::optional<fs::path> ModelPath::find(const std::string& uri, const fs::path& 
   if (path.empty()) path = after_scheme(uri, "package://");
   if (path.empty()) {
     const std::string file = uri.starts_with("file://") ? uri.substr(7) : uri;
-    const auto found = first_existing({from.parent_path(), world_.parent_path()}, file);
+    const auto found = first_existing(folders_of_files(from), file);
     if (found || uri.find('/') != std::string::npos) return found;
     path = uri;
   }
@@ -203,6 +203,17 @@ std::optional<fs::path> ModelPath::find(const std::string& uri, const fs::path& 
   const std::size_t slash = std::min(path.find('/'), path.size());
   return find_in_caches(fuel_caches_, {"", path.substr(0, slash), 0,
                                        fs::path(path.substr(std::min(slash + 1, path.size())))});
+}
+
+/// Gazebo's resource path often has the folder above the models: "file://models/NAME/…".
+std::vector<fs::path> ModelPath::folders_of_files(const fs::path& from) const {
+  const fs::path world = world_.parent_path();
+  std::vector<fs::path> folders{from.parent_path(), world, world.parent_path()};
+  for (const fs::path& models : model_folders_) {
+    folders.push_back(models);
+    folders.push_back((models / "").parent_path().parent_path());
+  }
+  return folders;
 }
 
 std::vector<fs::path> ModelPath::folders_of_models(const fs::path& from) const {
@@ -216,7 +227,7 @@ std::vector<fs::path> ModelPath::folders_of_models(const fs::path& from) const {
 std::string ModelPath::advice_on_missing(const std::string& uri, const fs::path& from) const {
   if (is_on_fuel(uri)) {
     return "Fuel models are not fetched. Download it with `gz fuel download -u \"" +
-           uri.substr(0, uri.find("/files/")) + "\"`" + kWithout;
+           uri.substr(0, uri.find("/files/")) + "\"`" + std::string(kWithout);
   }
   const std::size_t scheme = uri.find("://");
   if (scheme == std::string::npos) {
@@ -231,7 +242,7 @@ std::string ModelPath::advice_on_missing(const std::string& uri, const fs::path&
              kWithout;
   return "Put it next to the world or into its models/, add its folder to GZ_SIM_RESOURCE_PATH, "
          "or download it with `gz fuel download`" +
-         kWithout;
+         std::string(kWithout);
 }
 
 fs::path sdf_file_of(const fs::path& model_folder, const std::string& latest_version) {

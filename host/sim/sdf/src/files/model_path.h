@@ -17,8 +17,9 @@ class ModelPath {
 
   /// The file or folder that `uri` means in the file `from`; none if there is nothing.
   ///
-  /// A path is relative to `from`, else to the world; one name alone is also that of a model.
-  /// model://NAME is searched for in models/ and
+  /// A path is relative to `from`, else to the world, the folder above it, the environment's
+  /// folders and the folders above these; one name alone is also that of a model. model://NAME is
+  /// searched for in models/ and
   /// ../models/ next to these two, beside them, in the folders of GZ_SIM_RESOURCE_PATH,
   /// IGN_GAZEBO_RESOURCE_PATH, GAZEBO_MODEL_PATH and SDF_PATH, in the model folders, and in Fuel's
   /// caches (GZ_FUEL_CACHE_PATH, IGN_FUEL_CACHE_PATH, ~/.gz/fuel, ~/.ignition/fuel), which are the
@@ -32,6 +33,7 @@ class ModelPath {
   std::string advice_on_missing(const std::string& uri, const std::filesystem::path& from) const;
 
  private:
+  std::vector<std::filesystem::path> folders_of_files(const std::filesystem::path& from) const;
   std::vector<std::filesystem::path> folders_of_models(const std::filesystem::path& from) const;
 
   std::filesystem::path world_;

@@ -61,7 +61,10 @@ class QuietConsole {
 constexpr std::size_t kLongestMessage = 2000;
 constexpr std::uintmax_t kLargestResource = std::uintmax_t{1} << 24;
 
-const std::regex kUnread("Error reading element <(\\S+)>.*");
+const std::regex& unread() {
+  static const std::regex message("Error reading element <(\\S+)>");
+  return message;
+}
 
 /// One line, without trailing full stop.
 std::string one_line(const std::string& text) {
@@ -237,7 +240,7 @@ bool SdfSource::leave_out_unreadable(const SdfStage::File& staged, sdf::Errors e
   if (!options_.is_tolerant || errors.empty() || !errors.front().LineNumber()) return false;
   const std::string reason = reason_of(errors.front());
   std::smatch match;
-  if (!std::regex_search(reason, match, kUnread)) return false;
+  if (!std::regex_search(reason, match, unread())) return false;
   const int line = *errors.front().LineNumber();
   const std::string left_out = stage_.leave_out(staged, match[1].str(), line);
   if (!left_out.empty() && warn)
@@ -273,7 +276,7 @@ std::string SdfSource::reason_of(const sdf::Error& error) const {
   const FileLocation at = where(error);
   std::string reason = one_line(error.Message());
   std::smatch match;
-  if (!std::regex_match(reason, match, kUnread) || !error.LineNumber()) return reason;
+  if (!std::regex_match(reason, match, unread()) || !error.LineNumber()) return reason;
   const auto* root = stage_.root_of(at.file);
   const auto* xml = root != nullptr ? element_at(*root, match[1].str(), at.line) : nullptr;
   if (xml == nullptr || xml->GetText() == nullptr) return reason;

@@ -149,16 +149,6 @@ constexpr std::array<std::string_view, 5> kDispensableParts = {"visual", "collis
 
 }  // namespace
 
-const XMLElement* element_at(const XMLElement& element, const std::string& name, int line) {
-  const XMLElement* found =
-      element.Name() == name && element.GetLineNum() == line ? &element : nullptr;
-  for (const auto* child = element.FirstChildElement(); child != nullptr;
-       child = child->NextSiblingElement()) {
-    if (const auto* inner = element_at(*child, name, line)) found = inner;
-  }
-  return found;
-}
-
 SdfStage::SdfStage(const fs::path& file, const ModelPath& path, const WorldOptions& options,
                    const WarningSink& warn)
     : path_(path), options_(options), warn_(warn), folder_("tether-sdf-") {
@@ -178,7 +168,7 @@ const XMLElement* SdfStage::root_of(const std::string& original) const {
 std::string SdfStage::leave_out(const File& file, const std::string& name, int line) {
   XMLDocument copy;
   if (copy.LoadFile(file.copy.c_str()) != tinyxml2::XML_SUCCESS) return "";
-  auto* element = const_cast<XMLElement*>(element_at(*copy.RootElement(), name, line));
+  XMLElement* element = element_at(*copy.RootElement(), name, line);
   if (element == nullptr) return "";
   for (XMLElement* parent = element; parent; parent = parent->Parent()->ToElement())
     if (std::ranges::find(kDispensableParts, parent->Name()) != kDispensableParts.end())

@@ -62,8 +62,13 @@ class SdfStage {
   int replaced_ = 0;
 };
 
-/// The last element of that name on the line: errors are of the innermost one.
-const tinyxml2::XMLElement* element_at(const tinyxml2::XMLElement& element, const std::string& name,
-                                       int line);
+/// The last element of that name on the line: errors are of the innermost one. nullptr: none.
+template <class Element>
+Element* element_at(Element& element, const std::string& name, int line) {
+  Element* found = element.Name() == name && element.GetLineNum() == line ? &element : nullptr;
+  for (Element* child = element.FirstChildElement(); child; child = child->NextSiblingElement())
+    if (Element* inner = element_at(*child, name, line)) found = inner;
+  return found;
+}
 
 }  // namespace tether::sim

@@ -68,9 +68,18 @@ TEST_F(ModelPathTest, ABareNameIsAFileElseAModel) {
   folder_.write("gz/thing/model.sdf", "");
   folder_.write("gz/a/b/model.sdf", "");
   EXPECT_EQ(find("thing"), "gz/thing");
-  EXPECT_EQ(find("a/b"), "") << "a path";
+  EXPECT_EQ(find("a/b"), "gz/a/b");
   folder_.write("worlds/thing", "");
   EXPECT_EQ(find("thing"), "worlds/thing");
+}
+
+TEST_F(ModelPathTest, APathMayBeginAboveTheModels) {
+  setenv("GAZEBO_MODEL_PATH", folder_.path("elsewhere/models").c_str(), 1);
+  for (const char* place : {"elsewhere/models/a/m.dae", "models/a/m.dae"}) {
+    std::filesystem::create_directories(folder_.path(place).parent_path());
+    folder_.write(place, "");
+    EXPECT_EQ(find("file://models/a/m.dae"), place);
+  }
 }
 
 TEST_F(ModelPathTest, FindsFuelModelsInItsCache) {
