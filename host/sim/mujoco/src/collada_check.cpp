@@ -1,6 +1,8 @@
 #include "collada_check.h"
 
+#include <algorithm>
 #include <map>
+#include <string>
 #include <string_view>
 
 #include <tinyxml2.h>
@@ -67,7 +69,8 @@ class Nodes {
   int nodes_ = 0;
 };
 
-// Assimp stops at a comment in <vertices>, and at an image that has no file.
+// Assimp stops at a comment in <vertices>, at a blank before a colour, and at an image that has no
+// file.
 bool mend(tinyxml2::XMLDocument& document, tinyxml2::XMLNode& parent) {
   bool is_changed = false;
   for (tinyxml2::XMLNode *child = parent.FirstChild(), *next = nullptr; child; child = next) {
@@ -80,6 +83,12 @@ bool mend(tinyxml2::XMLDocument& document, tinyxml2::XMLNode& parent) {
     XMLElement* const element = child->ToElement();
     if (element == nullptr) continue;
     is_changed = mend(document, *element) || is_changed;
+    const std::string_view text = element->GetText() != nullptr ? element->GetText() : "";
+    const std::size_t first = std::min(text.find_first_not_of(" \t\r\n"), text.size());
+    if (std::string_view(element->Name()) == "color" && first > 0) {
+      element->SetText(std::string(text.substr(first)).c_str());
+      is_changed = true;
+    }
     if (std::string_view(element->Name()) != "image") continue;
     XMLElement* file = element->FirstChildElement("init_from");
     if (file != nullptr && (file->GetText() != nullptr || file->FirstChildElement())) continue;

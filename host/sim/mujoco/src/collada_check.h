@@ -10,7 +10,7 @@ namespace tether::sim {
 /// @throws Error(kBadFile) with `file` and the line, if `text` is not XML, nested deeper than 100
 /// elements, or has nodes within nodes deeper than 200 or more than 100,000 of them.
 ///
-/// Leaves out what Assimp refuses: comments, and images without a file.
+/// Changes what Assimp refuses: comments, blanks before colours, and images without a file.
 void check_collada(std::string& text, const std::filesystem::path& file);
 
 }  // namespace tether::sim

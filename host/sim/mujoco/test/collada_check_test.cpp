@@ -29,12 +29,14 @@ TEST(ColladaCheck, TakesNodesThatOthersReferTo) {
   }
 }
 
-TEST(ColladaCheck, LeavesOutCommentsAndNamesImagesWithoutAFile) {
-  std::string text = "<a><vertices><!-- b --><input/></vertices><image id='i'/></a>";
+TEST(ColladaCheck, ChangesWhatAssimpRefuses) {
+  std::string text =
+      "<a><vertices><!-- b --><input/></vertices><image id='i'/><color>\n 1 0 0 1</color></a>";
   check_collada(text, "a.dae");
   EXPECT_EQ(text.find("<!--"), std::string::npos);
   EXPECT_NE(text.find("<init_from>no file</init_from>"), std::string::npos);
   EXPECT_NE(text.find("<input/>"), std::string::npos);
+  EXPECT_NE(text.find("<color>1 0 0 1</color>"), std::string::npos);
 }
 
 TEST(ColladaCheck, RefusesCirclesDepthAndMultiplication) {

@@ -411,7 +411,11 @@ std::string in_model(const sdf::ElementPtr& element) {
 }  // namespace
 
 std::string left_out_because(const Error& error) {
-  return std::string("cannot be used and is left out: ") + error.what();
+  std::string reason = error.what();
+  const FileLocation& where = error.where();  // that of the warning, or near it
+  const std::string place = where.file + ":" + std::to_string(where.line) + ": ";
+  if (reason.starts_with(place)) reason.erase(0, place.size());
+  return "cannot be used and is left out: " + reason;
 }
 
 bool is_battery_plugin(const sdf::ElementPtr& element) {
