@@ -33,13 +33,14 @@ raster::Rgb rgb(const Vec3& v) {
 // Each pixel is the mean of four.
 raster::Texture halved(const raster::Texture& in) {
   raster::Texture out{std::max(1, in.width_px / 2), std::max(1, in.height_px / 2), {}};
-  const auto byte = [&](int x, int y, int channel) {
-    const int column = std::min(x, in.width_px - 1), row = std::min(y, in.height_px - 1);
-    return int{in.rgba[static_cast<std::size_t>(4 * (row * in.width_px + column) + channel)]};
+  const auto byte = [&](int x, int y, std::size_t channel) {
+    const auto column = static_cast<std::size_t>(std::min(x, in.width_px - 1));
+    const auto row = static_cast<std::size_t>(std::min(y, in.height_px - 1));
+    return int{in.rgba[4 * (row * static_cast<std::size_t>(in.width_px) + column) + channel]};
   };
   for (int y = 0; y < out.height_px; ++y)
     for (int x = 0; x < out.width_px; ++x)
-      for (int c = 0; c < 4; ++c)
+      for (std::size_t c = 0; c < 4; ++c)
         out.rgba.push_back(static_cast<std::uint8_t>(
             (byte(2 * x, 2 * y, c) + byte(2 * x + 1, 2 * y, c) + byte(2 * x, 2 * y + 1, c) +
              byte(2 * x + 1, 2 * y + 1, c) + 2) /
