@@ -107,6 +107,7 @@ void check_collada(std::string& text, const std::filesystem::path& file) {
     refuse(file, document.ErrorLineNum(),
            std::string("cannot be read as a COLLADA mesh: ") + document.ErrorName());
   }
+  if (document.RootElement() == nullptr) refuse(file, 0, "has no element, as COLLADA meshes do");
   Nodes nodes(file);
   nodes.collect(*document.RootElement());
   nodes.walk_scenes(*document.RootElement());

@@ -5,6 +5,7 @@
 
 #include "collada_check.h"
 #include "conversions.h"
+#include "gltf_check.h"
 
 #include <algorithm>
 #include <cctype>
@@ -36,6 +37,7 @@ using uav::Vec3;
 constexpr std::uintmax_t kLargestMesh = std::uintmax_t{1} << 29;  // 10,000,000 triangles of STL
 constexpr unsigned kMaxCorners = 1000;  // Assimp's time grows with their square
 constexpr std::size_t kMaxHullCorners = 1'000'000;
+constexpr std::size_t kMostTrianglesInPieces = 300'000;
 
 [[noreturn]] void fail_mesh(const std::filesystem::path& file, const std::string& what) {
   throw Error(ErrorCode::kBadFile, FileLocation{file.string()}, what);
@@ -282,12 +284,21 @@ class CompanionFiles final : public Assimp::IOSystem {
   Assimp::IOStream* Open(const char* name, const char*) override {
     const std::filesystem::path* const file = find_companion(mesh_, name);
     if (file == nullptr) return nullptr;
-    const std::string bytes = os::read_file(*file, kLargestMesh);
+    std::string bytes = os::read_file(*file, kLargestMesh);
+    if (type_of(*file) == ".mtl") bytes = clean_library(bytes);
     auto* const copy = new std::uint8_t[bytes.size()];  // the stream deletes it
     std::copy(bytes.begin(), bytes.end(), copy);
     return new Assimp::MemoryIOStream(copy, bytes.size(), true);
   }
   void Close(Assimp::IOStream* stream) override { delete stream; }
+
+  std::uintmax_t bytes() const {
+    std::uintmax_t sum = 0;
+    std::error_code ignored;
+    for (const std::filesystem::path& file : mesh_.companions)
+      if (const auto size = std::filesystem::file_size(file, ignored); !ignored) sum += size;
+    return sum;
+  }
 
  private:
   MeshGeometry mesh_;
@@ -309,6 +320,7 @@ void MeshFiles::Imported::read(const std::filesystem::path& file) try {
   std::string bytes = os::read_file(file, kLargestMesh);
   const std::string type = type_of(file);
   if (type == ".dae") check_collada(bytes, file);
+  if (type == ".glb" || type == ".gltf") check_gltf(bytes, bytes.size() + companions.bytes(), file);
   keep_reader(importer, type);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   // Submeshes go by the names of nodes, as in Gazebo, not by their ids.
@@ -338,6 +350,41 @@ void MeshFiles::Imported::read(const std::filesystem::path& file) try {
 }
 
 namespace {
+
+// The places of the corners of each piece, in the order of x, y, z; so are the pieces. Triangles
+// are of one piece if they share an edge with each other only: two boxes that touch are two pieces.
+std::vector<std::vector<Vec3>> connected_pieces(const raster::Mesh& mesh) {
+  using Place = std::array<float, 3>;
+  std::map<std::pair<Place, Place>, std::vector<std::size_t>> edges;
+  std::vector<std::size_t> parent(mesh.triangles.size());
+  std::iota(parent.begin(), parent.end(), std::size_t{0});
+  const auto place = [&](std::size_t triangle, std::size_t corner) -> const Place& {
+    return mesh.vertices[mesh.triangles[triangle][corner % 3]].position;
+  };
+  // Of large meshes, nobody meant the pieces, and finding them takes long.
+  const bool is_whole = parent.size() > kMostTrianglesInPieces;
+  if (is_whole) std::ranges::fill(parent, std::size_t{0});
+  for (std::size_t t = 0; t < parent.size() && !is_whole; ++t)
+    for (std::size_t i = 0; i < 3; ++i)
+      edges[std::minmax(place(t, i), place(t, i + 1))].push_back(t);
+  const auto root = [&](std::size_t i) {
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+  };
+  for (const auto& [edge, triangles] : edges)
+    if (triangles.size() == 2) parent[root(triangles[0])] = root(triangles[1]);
+  std::map<std::size_t, std::set<Place>> places;
+  for (std::size_t t = 0; t < parent.size(); ++t)
+    for (std::size_t i = 0; i < 3; ++i) places[root(t)].insert(place(t, i));
+  std::set<std::set<Place>> in_order;
+  for (auto& [number, corners] : places) in_order.insert(std::move(corners));
+  std::vector<std::vector<Vec3>> pieces;
+  for (const std::set<Place>& corners : in_order) {
+    pieces.emplace_back();
+    for (const auto& [x, y, z] : corners) pieces.back().push_back({x, y, z});
+  }
+  return pieces;
+}
 
 // With a small cube around each point.
 std::vector<Vec3> thickened(const std::vector<Vec3>& points) {
@@ -447,18 +494,31 @@ std::vector<MeshPart> MeshFiles::parts(const MeshGeometry& mesh, const WarningSi
   return parts;
 }
 
+const std::vector<std::vector<Vec3>>& MeshFiles::pieces_of(const MeshGeometry& any) const {
+  MeshGeometry mesh = any;
+  mesh.piece.reset();
+  const auto [known, is_new] = pieces_.try_emplace(key_of(mesh));
+  if (is_new) known->second = connected_pieces(load(mesh, {}));
+  return known->second;
+}
+
+std::size_t MeshFiles::pieces(const MeshGeometry& mesh) const {
+  return pieces_of(mesh).size();
+}
+
 std::vector<Vec3> MeshFiles::corners(const MeshGeometry& mesh) const {
-  std::vector<std::array<float, 3>> places;
-  for (const raster::Mesh::Vertex& v : load(mesh, {}).vertices) {
-    places.push_back(v.position);
-  }
-  std::sort(places.begin(), places.end());
-  places.erase(std::unique(places.begin(), places.end()), places.end());
-  if (places.size() > kMaxHullCorners) {
+  std::vector<Vec3> corners;
+  const std::vector<std::vector<Vec3>>& pieces = pieces_of(mesh);
+  for (std::size_t i = 0; i < pieces.size(); ++i)
+    if (!mesh.piece || *mesh.piece == i)
+      corners.insert(corners.end(), pieces[i].begin(), pieces[i].end());
+  if (corners.size() > kMaxHullCorners) {
     fail_mesh(mesh.file, "has more than 1,000,000 vertices, which is too many for a collision");
   }
-  std::vector<Vec3> corners;
-  for (const auto& [x, y, z] : places) corners.push_back({x, y, z});
+  const auto in_order = [](const Vec3& p) { return std::tuple{p.x, p.y, p.z}; };
+  std::ranges::sort(corners, {}, in_order);
+  const auto repeated = std::ranges::unique(corners, {}, in_order);
+  corners.erase(repeated.begin(), repeated.end());
   return is_flat(corners) ? thickened(corners) : corners;
 }
 

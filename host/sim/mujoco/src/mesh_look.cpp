@@ -6,8 +6,12 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <locale>
+#include <map>
+#include <sstream>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <assimp/material.h>
 #include <assimp/mesh.h>
@@ -23,23 +27,27 @@ using uav::Vec3;
 constexpr int kSteps = 64;         // of each channel of the palette
 constexpr int kPaletteSize = 512;  // kSteps³ pixels
 
+// Of a library of materials: colours, and how opaque or transparent a surface is.
+const std::map<std::string, std::size_t, std::less<>> kNumbersOfLibraries = {
+    {"Kd", 3}, {"Ks", 3}, {"Ke", 3}, {"d", 1}, {"Tr", 1}};
+
 // Some writers have colours brighter than white, or no numbers.
-double share(float value) {
-  return std::isfinite(value) ? std::clamp(double{value}, 0.0, 1.0) : 0.0;
+double share(double value) {
+  return std::isfinite(value) ? std::clamp(value, 0.0, 1.0) : 0.0;
 }
 
 Vec3 colour(const aiMaterial& material, const char* key, unsigned type, unsigned index,
             const Vec3& otherwise) {
   aiColor3D c;
   if (material.Get(key, type, index, c) != AI_SUCCESS) return otherwise;
-  return {share(c.r), share(c.g), share(c.b)};
+  return {share(double{c.r}), share(double{c.g}), share(double{c.b})};
 }
 
 double number(const aiMaterial& material, const char* key, unsigned type, unsigned index,
               float otherwise) {
   float value = otherwise;
   static_cast<void>(material.Get(key, type, index, value));
-  return share(value);
+  return share(double{value});
 }
 
 // "wood floor.png" of "C:\\pictures\\Wood%20Floor.png".
@@ -113,6 +121,38 @@ const std::filesystem::path* find_companion(const MeshGeometry& mesh, std::strin
   return found == mesh.companions.end() ? nullptr : &*found;
 }
 
+std::string clean_library(const std::string& text) {
+  std::istringstream lines(text);
+  std::string out;
+  bool has_material = false;
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    words.imbue(std::locale::classic());
+    std::string key, rest;
+    words >> key >> std::ws;
+    if (key == "newmtl" && words >> rest) {
+      has_material = true;
+      out += "newmtl " + rest + "\n";
+    } else if (has_material && key == "map_Kd" && std::getline(words, rest)) {
+      // Behind options, the name is the last word.
+      while (!rest.empty() && std::isspace(static_cast<unsigned char>(rest.back())) != 0)
+        rest.pop_back();
+      if (rest.starts_with('-')) rest = rest.substr(rest.find_last_of(" \t") + 1);
+      if (!rest.empty()) out += "map_Kd " + rest + "\n";
+    } else if (has_material) {
+      const auto count = kNumbersOfLibraries.find(key);
+      std::vector<double> numbers;
+      for (double number = 0.0; words >> number;) numbers.push_back(number);
+      if (count == kNumbersOfLibraries.end() || numbers.size() < count->second) continue;
+      out += key;
+      for (std::size_t i = 0; i < count->second; ++i)
+        out += " " + std::to_string(share(numbers[i]));
+      out += "\n";
+    }
+  }
+  return out;
+}
+
 MeshLook read_look(const aiScene& scene, const aiMaterial& material, const MeshGeometry& mesh,
                    const WarningSink& warn) {
   MeshLook look;
@@ -177,9 +217,9 @@ std::array<float, 2> place_in_palette(const aiMesh& mesh, std::span<const unsign
   double r = 0.0, g = 0.0, b = 0.0;
   for (const unsigned corner : corners) {
     const aiColor4D& c = mesh.mColors[0][corner];
-    r += share(c.r) / static_cast<double>(corners.size());
-    g += share(c.g) / static_cast<double>(corners.size());
-    b += share(c.b) / static_cast<double>(corners.size());
+    r += share(double{c.r}) / static_cast<double>(corners.size());
+    g += share(double{c.g}) / static_cast<double>(corners.size());
+    b += share(double{c.b}) / static_cast<double>(corners.size());
   }
   const auto step = [](double value) {
     return std::min(kSteps - 1, static_cast<int>(std::lround(value * (kSteps - 1))));

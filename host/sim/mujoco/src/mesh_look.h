@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <memory>
 #include <span>
+#include <string>
+#include <string_view>
 
 #include <tether/base/warning.h>
 #include <tether/sim/world.h>
@@ -35,6 +37,10 @@ bool has_vertex_colours(const aiScene& scene, const aiMesh& mesh,
 /// green and blue: a triangle is where its mean colour is.
 std::shared_ptr<const raster::Texture> palette();
 std::array<float, 2> place_in_palette(const aiMesh& mesh, std::span<const unsigned> corners);
+
+/// What of a library of materials of OBJ files (.mtl) is used: Assimp reads beyond its own memory
+/// in libraries with other lines.
+std::string clean_library(const std::string& text);
 
 /// The companion that a mesh's text means: the one of that file name, whatever the folder and the
 /// case of its letters; nullptr if there is none.

@@ -24,6 +24,7 @@ struct Parts {
 
   static World usable(World world, const MeshFiles& meshes, const WarningSink& warn) {
     leave_out_unusable_meshes(world, meshes, warn);
+    split_collisions(world, meshes);
     return world;
   }
 

@@ -122,10 +122,12 @@ class PhysicsXml {
   }
 
   std::string describe(const MeshGeometry& mesh, const Pose& X, const Collision& collision) {
-    warn_({Consequence::kBehavesDifferent,
-           {mesh.file.string()},
-           fmt::format("collision '{}'", collision.name),
-           "collides as the convex hull of its mesh"});
+    if (mesh.piece.value_or(0) == 0)
+      warn_({Consequence::kBehavesDifferent,
+             {mesh.file.string()},
+             fmt::format("collision '{}'", collision.name),
+             mesh.piece ? "collides as the convex hull of each connected piece of its mesh"
+                        : "collides as the convex hull of its mesh"});
     const auto [known, is_new] = meshes_.try_emplace(key_of(mesh), meshes_.size());
     const std::string name = fmt::format("m{}", known->second);
     if (is_new) {

@@ -3,6 +3,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -47,6 +48,17 @@ class UsableMeshes {
   std::map<MeshKey, std::optional<std::string>> problems_;
 };
 
+constexpr std::size_t kMostPieces = 500;
+
+// 0: not a mesh, or one that cannot be read, which is refused later.
+std::size_t pieces_of(const Collision& collision, const MeshFiles& meshes) try {
+  const auto* mesh = std::get_if<MeshGeometry>(&collision.geometry);
+  return mesh != nullptr ? meshes.pieces(*mesh) : 0;
+} catch (const Error& error) {
+  if (error.code() != ErrorCode::kBadFile) throw;
+  return 0;
+}
+
 }  // namespace
 
 void leave_out_unusable_meshes(World& world, const MeshFiles& meshes, const WarningSink& warn) {
@@ -56,6 +68,26 @@ void leave_out_unusable_meshes(World& world, const MeshFiles& meshes, const Warn
     for (Link& link : model.links) {
       usable.leave_out(link.visuals, "visual");
       usable.leave_out(link.collisions, "collision");
+    }
+  }
+}
+
+void split_collisions(World& world, const MeshFiles& meshes) {
+  for (Model& model : world.models) {
+    for (Link& link : model.links) {
+      std::vector<Collision> all;
+      for (const Collision& collision : link.collisions) {
+        const std::size_t pieces = pieces_of(collision, meshes);
+        if (pieces < 2 || pieces > kMostPieces) {
+          all.push_back(collision);
+          continue;
+        }
+        for (std::size_t i = 0; i < pieces; ++i) {
+          all.push_back(collision);
+          std::get<MeshGeometry>(all.back().geometry).piece = i;
+        }
+      }
+      link.collisions = std::move(all);
     }
   }
 }

@@ -51,7 +51,7 @@ TEST(ColladaCheck, RefusesCirclesDepthAndMultiplication) {
 }
 
 TEST(ColladaCheck, RefusesWhatIsNotXml) {
-  for (std::string text : {"", "PK", "<a><b></a>"}) {
+  for (std::string text : {"", "PK", "<a><b></a>", "<!-- a -->"}) {
     EXPECT_EQ(bad_file_error([&] { check_collada(text, "a.dae"); }).where().file, "a.dae");
   }
 }

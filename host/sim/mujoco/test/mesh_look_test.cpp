@@ -63,6 +63,17 @@ TEST(MeshLookTest, PartsOfAnObjFileHaveTheColoursOfItsLibrary) {
   EXPECT_THAT(loaded.warnings, IsEmpty());
 }
 
+// Each has made Assimp crash.
+TEST(MeshLookTest, TakesOfALibraryOnlyWhatItKnows) {
+  EXPECT_EQ(clean_library("Kd 1 0 0\nnewmtl\nnewmtl a b\nKd 2 x\nKd 1 0.5 nan\nKd 1 0.5 0 7\n"
+                          "map_Kd\nmap_Kd -s 1 1 1 a.png \r\nmap_Kd my wall.png\nd 0.5\nillum 2"),
+            "newmtl a\nKd 1.000000 0.500000 0.000000\nmap_Kd a.png\nmap_Kd my wall.png\n"
+            "d 0.500000\n");
+  const ScratchFolder folder;
+  const auto library = folder.write("paints.mtl", "\xcbnewmtl red\nKd 1 0 0\nd 0.5\n");
+  EXPECT_EQ(load(folder.write("a.obj", kTwoColours), {library}).parts.size(), 2U);
+}
+
 TEST(MeshLookTest, WithoutItsLibraryAnObjFileIsGrey) {
   const ScratchFolder folder;
   folder.write("paints.mtl", "newmtl red\nKd 1 0 0\n");

@@ -54,6 +54,7 @@ struct MeshGeometry {
   FileLocation named_at{};   ///< where the world names the file; empty: in no file
   /// What else it is made of: libraries of materials, pictures and buffers that it names. Absolute.
   std::vector<std::filesystem::path> companions{};
+  std::optional<std::size_t> piece{};  ///< only this one of its connected pieces; none: all
 };
 using Geometry = std::variant<BoxGeometry, CylinderGeometry, SphereGeometry, CapsuleGeometry,
                               EllipsoidGeometry, PlaneGeometry, MeshGeometry>;
