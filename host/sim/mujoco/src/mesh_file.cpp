@@ -6,6 +6,7 @@
 #include "collada_check.h"
 #include "conversions.h"
 #include "gltf_check.h"
+#include "mesh_pieces.h"
 
 #include <algorithm>
 #include <cctype>
@@ -37,7 +38,6 @@ using uav::Vec3;
 constexpr std::uintmax_t kLargestMesh = std::uintmax_t{1} << 29;  // 10,000,000 triangles of STL
 constexpr unsigned kMaxCorners = 1000;  // Assimp's time grows with their square
 constexpr std::size_t kMaxHullCorners = 1'000'000;
-constexpr std::size_t kMostTrianglesInPieces = 300'000;
 
 [[noreturn]] void fail_mesh(const std::filesystem::path& file, const std::string& what) {
   throw Error(ErrorCode::kBadFile, FileLocation{file.string()}, what);
@@ -351,52 +351,6 @@ void MeshFiles::Imported::read(const std::filesystem::path& file) try {
 
 namespace {
 
-// The places of the corners of each piece, in the order of x, y, z; so are the pieces. Triangles
-// are of one piece if they share an edge with each other only: two boxes that touch are two pieces.
-std::vector<std::vector<Vec3>> connected_pieces(const raster::Mesh& mesh) {
-  using Place = std::array<float, 3>;
-  std::map<std::pair<Place, Place>, std::vector<std::size_t>> edges;
-  std::vector<std::size_t> parent(mesh.triangles.size());
-  std::iota(parent.begin(), parent.end(), std::size_t{0});
-  const auto place = [&](std::size_t triangle, std::size_t corner) -> const Place& {
-    return mesh.vertices[mesh.triangles[triangle][corner % 3]].position;
-  };
-  // Of large meshes, nobody meant the pieces, and finding them takes long.
-  const bool is_whole = parent.size() > kMostTrianglesInPieces;
-  if (is_whole) std::ranges::fill(parent, std::size_t{0});
-  for (std::size_t t = 0; t < parent.size() && !is_whole; ++t)
-    for (std::size_t i = 0; i < 3; ++i)
-      edges[std::minmax(place(t, i), place(t, i + 1))].push_back(t);
-  const auto root = [&](std::size_t i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  };
-  for (const auto& [edge, triangles] : edges)
-    if (triangles.size() == 2) parent[root(triangles[0])] = root(triangles[1]);
-  std::map<std::size_t, std::set<Place>> places;
-  for (std::size_t t = 0; t < parent.size(); ++t)
-    for (std::size_t i = 0; i < 3; ++i) places[root(t)].insert(place(t, i));
-  std::set<std::set<Place>> in_order;
-  for (auto& [number, corners] : places) in_order.insert(std::move(corners));
-  std::vector<std::vector<Vec3>> pieces;
-  for (const std::set<Place>& corners : in_order) {
-    pieces.emplace_back();
-    for (const auto& [x, y, z] : corners) pieces.back().push_back({x, y, z});
-  }
-  return pieces;
-}
-
-// With a small cube around each point.
-std::vector<Vec3> thickened(const std::vector<Vec3>& points) {
-  constexpr double kHalf_m = 1e-3;
-  std::vector<Vec3> thick;
-  for (const Vec3& p : points)
-    for (int i = 0; i < 8; ++i)
-      thick.push_back(p + Vec3{(i & 1) != 0 ? kHalf_m : -kHalf_m, (i & 2) != 0 ? kHalf_m : -kHalf_m,
-                               (i & 4) != 0 ? kHalf_m : -kHalf_m});
-  return thick;
-}
-
 bool has_area(const raster::Mesh& mesh) {
   return std::ranges::any_of(mesh.triangles, [&](const auto& triangle) {
     const auto at = [&](std::size_t i) {
@@ -405,22 +359,6 @@ bool has_area(const raster::Mesh& mesh) {
     };
     return norm(cross(at(1) - at(0), at(2) - at(0))) > 0.0;
   });
-}
-
-// Whether points lie in a plane: no convex hull is found for them. @pre There are points.
-bool is_flat(const std::vector<Vec3>& points) {
-  constexpr double kFlat = 1e-6;  // of their length
-  const auto most = [&](const auto& measure) {
-    return *std::ranges::max_element(points, {}, measure);
-  };
-  const Vec3 a = points.front();
-  const Vec3 b = most([&](const Vec3& p) { return norm(p - a); });
-  const Vec3 c = most([&](const Vec3& p) { return norm(cross(b - a, p - a)); });
-  const Vec3 normal = cross(b - a, c - a);
-  const auto volume_m3 = [&](const Vec3& p) { return std::abs(dot(normal, p - a)); };
-  const double length_m = norm(b - a);
-  return norm(normal) <= kFlat * length_m * length_m ||
-         volume_m3(most(volume_m3)) <= kFlat * length_m * norm(normal);
 }
 
 // Moves the middle of their extent to the origin.
@@ -519,7 +457,7 @@ std::vector<Vec3> MeshFiles::corners(const MeshGeometry& mesh) const {
   std::ranges::sort(corners, {}, in_order);
   const auto repeated = std::ranges::unique(corners, {}, in_order);
   corners.erase(repeated.begin(), repeated.end());
-  return is_flat(corners) ? thickened(corners) : corners;
+  return with_volume(corners);
 }
 
 }  // namespace tether::sim

@@ -313,10 +313,8 @@ class Walk {
     // These two are read, and warned of, where a UAV is put together.
     if (!kLeaves.contains(name)) visit_children(element);
     // Of what it consisted, nothing may be left.
-    if (name == "model" && parent != "sdf" && !element->HasElement("link") &&
-        !element->HasElement("model"))
-      return false;
-    return true;
+    return name != "model" || parent == "sdf" || element->HasElement("link") ||
+           element->HasElement("model");
   }
 
   /// Warns of an element that is not and should be.
