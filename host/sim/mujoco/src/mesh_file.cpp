@@ -455,8 +455,7 @@ std::vector<Vec3> MeshFiles::corners(const MeshGeometry& mesh) const {
   }
   const auto in_order = [](const Vec3& p) { return std::tuple{p.x, p.y, p.z}; };
   std::ranges::sort(corners, {}, in_order);
-  const auto repeated = std::ranges::unique(corners, {}, in_order);
-  corners.erase(repeated.begin(), repeated.end());
+  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
   return with_volume(corners);
 }
 

@@ -55,7 +55,7 @@ class MeshFiles {
   struct Imported;
   const aiScene& imported(const MeshGeometry& mesh) const;
 
-  const std::vector<std::vector<uav::Vec3>>& pieces_of(const MeshGeometry& mesh) const;
+  const std::vector<std::vector<uav::Vec3>>& pieces_of(const MeshGeometry& any) const;
 
   mutable std::map<std::filesystem::path, std::unique_ptr<Imported>> files_;
   mutable std::map<MeshKey, std::vector<std::vector<uav::Vec3>>> pieces_;
