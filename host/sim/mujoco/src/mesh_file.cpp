@@ -286,6 +286,7 @@ class CompanionFiles final : public Assimp::IOSystem {
     if (file == nullptr) return nullptr;
     std::string bytes = os::read_file(*file, kLargestMesh);
     if (type_of(*file) == ".mtl") bytes = clean_library(bytes);
+    if (bytes.empty()) return nullptr;
     auto* const copy = new std::uint8_t[bytes.size()];  // the stream deletes it
     std::copy(bytes.begin(), bytes.end(), copy);
     return new Assimp::MemoryIOStream(copy, bytes.size(), true);
@@ -435,9 +436,9 @@ std::vector<MeshPart> MeshFiles::parts(const MeshGeometry& mesh, const WarningSi
 const std::vector<std::vector<Vec3>>& MeshFiles::pieces_of(const MeshGeometry& any) const {
   MeshGeometry mesh = any;
   mesh.piece.reset();
-  const auto [known, is_new] = pieces_.try_emplace(key_of(mesh));
-  if (is_new) known->second = connected_pieces(load(mesh, {}));
-  return known->second;
+  const auto known = pieces_.find(key_of(mesh));
+  if (known != pieces_.end()) return known->second;
+  return pieces_.emplace(key_of(mesh), connected_pieces(load(mesh, {}))).first->second;
 }
 
 std::size_t MeshFiles::pieces(const MeshGeometry& mesh) const {
