@@ -65,7 +65,7 @@ Command world_check_command() {
 
 Examples:
   tether world check room
-  tether world check warehouse.sdf --missing-models placeholder)",
+  tether world check warehouse.sdf --strict)",
                       check_world);
 }
 

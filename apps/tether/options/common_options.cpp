@@ -3,12 +3,13 @@
 namespace tether::app {
 
 Options reading_options(ReadingOptions& reading) {
-  return {{"--missing-models",
-           "What to do about an included model, a mesh or a texture that is not found: error, or "
-           "placeholder (go without it, and name it in the result)",
-           &reading.missing_models, one_of({"error", "placeholder"})},
+  return {{"--strict",
+           "Reject a world with parts that are not found or cannot be used. Without this option, "
+           "they are left out or corrected, and named in the result",
+           &reading.strict},
           {"--tolerant",
-           "Correct impossible inertias of the world and the UAVs, and name them in the result",
+           "Also leave out or correct parts of the UAVs' models: inertias that no body can have, "
+           "meshes that are not found",
            &reading.tolerant}};
 }
 

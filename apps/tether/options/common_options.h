@@ -12,8 +12,8 @@ namespace tether::app {
 
 /// How worlds are read.
 struct ReadingOptions {
+  bool strict = false;
   bool tolerant = false;
-  std::string missing_models = "error";  ///< "error" or "placeholder"
 };
 Options reading_options(ReadingOptions& reading);
 

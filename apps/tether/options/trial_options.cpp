@@ -35,8 +35,8 @@ campaign::Settings versions_of(const scenario::Campaign& campaign, const Reading
   };
   if (std::ranges::any_of(campaign.scenarios, is_measured))
     versions["machine"] = by_engine ? "chosen by an engine" : os::describe_machine();
-  if (reading.tolerant) versions["reading of worlds"] = "tolerant";
-  if (reading.missing_models != "error") versions["missing models"] = reading.missing_models;
+  if (reading.strict) versions["reading of worlds"] = "strict";
+  if (reading.tolerant) versions["reading of UAVs"] = "tolerant";
   return versions;
 }
 

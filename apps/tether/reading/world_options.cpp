@@ -14,8 +14,8 @@ constexpr std::size_t kFew = 3;
 sim::WorldOptions world_options(const ReadingOptions& reading,
                                 const scenario::ShippedFiles& shipped) {
   return {.model_folders = {shipped.models()},
-          .is_tolerant = reading.tolerant,
-          .replaces_missing_models = reading.missing_models == "placeholder"};
+          .is_strict = reading.strict,
+          .is_tolerant = reading.tolerant};
 }
 
 std::string summary_of(std::span<const Warning> warnings, const std::string& list) {

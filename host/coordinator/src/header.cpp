@@ -99,7 +99,7 @@ double max_acceleration_m_s2(const uav::MultirotorParameters& airframe, const si
   const double thrust_N = rotors * airframe.thrust_coefficient * speed * speed;
   const double drag_N = (airframe.linear_drag_N_s_m + rotors * airframe.drag_coefficient * speed) *
                         most_wind_m_s(world.wind);
-  return (thrust_N + drag_N) / airframe.mass_kg + std::abs(world.gravity_m_s2);
+  return (thrust_N + drag_N) / airframe.mass_kg + norm(felt_at_rest(world));
 }
 
 /// Of all rotors at full speed, as if each one turned the UAV the same way.

@@ -22,8 +22,8 @@ void fields(auto& io, auto& request) {
   io("settings", request.settings);
   io("profile", request.profile);
   io("model_folders", request.reading.model_folders);
+  io("strict", request.reading.is_strict);
   io("tolerant", request.reading.is_tolerant);
-  io("replaces_missing_models", request.reading.replaces_missing_models);
   io("condition", request.condition);
   io("target", request.target);
   io("simulator", request.simulator);

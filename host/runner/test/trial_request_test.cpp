@@ -23,7 +23,7 @@ class Generator {
     if (flag()) any.profile = file();
     for (std::size_t i = below(3); i > 0; --i) any.reading.model_folders.push_back(file());
     any.reading.is_tolerant = flag();
-    any.reading.replaces_missing_models = flag();
+    any.reading.is_strict = flag();
     any.condition = text();
     any.target = target();
     any.simulator = text();

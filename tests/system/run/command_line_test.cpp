@@ -103,12 +103,11 @@ TEST(WorldCheck, PrintsWhatIsNotSimulatedUnlessTheWorldCannotBeUsed) {
   write_text(folder / "w.sdf",
              "<sdf version='1.7'><world name='w'><plugin name='p' filename='p'/>"
              "<include><uri>model://gone</uri></include></world></sdf>");
-  const Output refused = run(tether({"world", "check", folder / "w.sdf"}));
+  const Output refused = run(tether({"world", "check", folder / "w.sdf", "--strict"}));
   EXPECT_EQ(refused.code, 2);
   EXPECT_EQ(refused.out, "");
   EXPECT_THAT(refused.err, HasSubstr("model://gone"));
-  const Output used =
-      run(tether({"world", "check", folder / "w.sdf", "--missing-models", "placeholder"}));
+  const Output used = run(tether({"world", "check", folder / "w.sdf"}));
   EXPECT_EQ(used.code, 0) << used.err;
   EXPECT_EQ(used.err, "");
   EXPECT_THAT(used.out,

@@ -1,6 +1,8 @@
 #include "collada_check.h"
 
+#include <algorithm>
 #include <map>
+#include <string>
 #include <string_view>
 
 #include <tinyxml2.h>
@@ -67,17 +69,52 @@ class Nodes {
   int nodes_ = 0;
 };
 
+// Assimp stops at a comment in <vertices>, at a blank before a colour, and at an image that has no
+// file.
+bool mend(tinyxml2::XMLDocument& document, tinyxml2::XMLNode& parent) {
+  bool is_changed = false;
+  for (tinyxml2::XMLNode *child = parent.FirstChild(), *next = nullptr; child; child = next) {
+    next = child->NextSibling();
+    if (child->ToComment() != nullptr) {
+      parent.DeleteChild(child);
+      is_changed = true;
+      continue;
+    }
+    XMLElement* const element = child->ToElement();
+    if (element == nullptr) continue;
+    is_changed = mend(document, *element) || is_changed;
+    const std::string_view text = element->GetText() != nullptr ? element->GetText() : "";
+    const std::size_t first = std::min(text.find_first_not_of(" \t\r\n"), text.size());
+    if (std::string_view(element->Name()) == "color" && first > 0) {
+      element->SetText(std::string(text.substr(first)).c_str());
+      is_changed = true;
+    }
+    if (std::string_view(element->Name()) != "image") continue;
+    XMLElement* file = element->FirstChildElement("init_from");
+    if (file != nullptr && (file->GetText() != nullptr || file->FirstChildElement())) continue;
+    if (file == nullptr) file = element->InsertNewChildElement("init_from");
+    file->SetText("no file");
+    is_changed = true;
+  }
+  return is_changed;
+}
+
 }  // namespace
 
-void check_collada(const std::string& text, const std::filesystem::path& file) {
+void check_collada(std::string& text, const std::filesystem::path& file) {
   tinyxml2::XMLDocument document;
   if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
     refuse(file, document.ErrorLineNum(),
            std::string("cannot be read as a COLLADA mesh: ") + document.ErrorName());
   }
+  if (document.RootElement() == nullptr) refuse(file, 0, "has no element, as COLLADA meshes do");
   Nodes nodes(file);
   nodes.collect(*document.RootElement());
   nodes.walk_scenes(*document.RootElement());
+  if (!mend(document, document)) return;
+  tinyxml2::XMLPrinter printer(nullptr, true);
+  document.Print(&printer);
+  text = printer.CStr();
 }
 
 }  // namespace tether::sim

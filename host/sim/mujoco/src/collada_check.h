@@ -9,6 +9,8 @@ namespace tether::sim {
 /// its stack is full, multiplies nodes without a limit, and unpacks archives.
 /// @throws Error(kBadFile) with `file` and the line, if `text` is not XML, nested deeper than 100
 /// elements, or has nodes within nodes deeper than 200 or more than 100,000 of them.
-void check_collada(const std::string& text, const std::filesystem::path& file);
+///
+/// Changes what Assimp refuses: comments, blanks before colours, and images without a file.
+void check_collada(std::string& text, const std::filesystem::path& file);
 
 }  // namespace tether::sim

@@ -90,7 +90,7 @@ void Dynamics::drive() {
   for (const auto& [i, body] : driven_) {
     const DrivenState state = driven_state(body, now_);
     mjtNum* force = data_->qfrc_applied + qvel_address(i);
-    copy_to(kDrivenMass_kg * (state.a_WB + uav::Vec3{0.0, 0.0, world_.gravity_m_s2}), force);
+    copy_to(kDrivenMass_kg * (state.a_WB + felt_at_rest(world_)), force);
     copy_to(kDrivenMass_kg * rotate(inverse(state.X_WB.q), state.alpha_WB_W), force + 3);
   }
 }

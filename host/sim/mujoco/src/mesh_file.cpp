@@ -5,11 +5,15 @@
 
 #include "collada_check.h"
 #include "conversions.h"
+#include "gltf_check.h"
+#include "mesh_pieces.h"
 
 #include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <exception>
+#include <limits>
+#include <map>
 #include <new>
 #include <numeric>
 #include <set>
@@ -17,6 +21,7 @@
 #include <string_view>
 
 #include <assimp/BaseImporter.h>
+#include <assimp/IOSystem.hpp>
 #include <assimp/Importer.hpp>
 #include <assimp/MemoryIOWrapper.h>
 #include <assimp/postprocess.h>
@@ -86,11 +91,12 @@ std::vector<aiVector3D> mended_normals(const aiMesh& mesh) {
   return normals;
 }
 
-// Collects the triangles of an Assimp scene.
+// Collects the triangles of an Assimp scene, by the number of their material.
 class MeshCollector {
  public:
-  MeshCollector(const aiScene& scene, const MeshGeometry& geometry, const TextureScale& texture)
-      : scene_(scene), geometry_(geometry), texture_(texture) {}
+  MeshCollector(const aiScene& scene, const MeshGeometry& geometry, const TextureScale& texture,
+                bool paints)
+      : scene_(scene), geometry_(geometry), texture_(texture), paints_(paints) {}
 
   void visit(const aiNode& node, const aiMatrix4x4& parent, bool wanted) {
     const aiMatrix4x4 transform = parent * node.mTransformation;
@@ -102,8 +108,12 @@ class MeshCollector {
     for (unsigned i = 0; i < node.mNumChildren; ++i) visit(*node.mChildren[i], transform, wanted);
   }
 
-  raster::Mesh take() { return std::move(out_); }
-  std::size_t materials() const { return materials_.size(); }
+  struct Part {
+    unsigned material = 0;
+    bool is_painted = false;  // by its vertices
+    friend auto operator<=>(const Part&, const Part&) = default;
+  };
+  std::map<Part, raster::Mesh> take() { return std::move(parts_); }
 
  private:
   bool is_named(const aiString& name) const {
@@ -111,8 +121,10 @@ class MeshCollector {
   }
 
   void add(const aiMesh& mesh, const aiMatrix4x4& transform) {
-    materials_.insert(mesh.mMaterialIndex);
-    const std::size_t first = out_.vertices.size();
+    const bool is_painted = paints_ && has_vertex_colours(scene_, mesh, geometry_.file);
+    raster::Mesh& out = parts_[{mesh.mMaterialIndex, is_painted}];
+    const std::size_t first = out.vertices.size();
+    const std::size_t triangles_before = out.triangles.size();
     const Vec3& s = geometry_.scale;
     const bool mirrored = transform.Determinant() * static_cast<float>(s.x * s.y * s.z) < 0.0F;
     aiMatrix3x3 normal_map(transform);
@@ -123,15 +135,36 @@ class MeshCollector {
     for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
       const aiVector3D p = transform * mesh.mVertices[i];
       const aiVector3D n = normal_map * normals[i];
-      out_.vertices.push_back(vertex({p.x * s.x, p.y * s.y, p.z * s.z},
-                                     {n.x / s.x, n.y / s.y, n.z / s.z}, texture_at(mesh, i)));
+      out.vertices.push_back(vertex({p.x * s.x, p.y * s.y, p.z * s.z},
+                                    {n.x / s.x, n.y / s.y, n.z / s.z}, texture_at(mesh, i)));
     }
-    for (unsigned i = 0; i < mesh.mNumFaces; ++i) add_face(mesh.mFaces[i], first, mirrored);
+    for (unsigned i = 0; i < mesh.mNumFaces; ++i) add_face(mesh.mFaces[i], first, mirrored, out);
+    if (is_painted) paint(mesh, first, triangles_before, out);
     // A file may name a mesh any number of times.
-    if (out_.triangles.size() > raster::kMaxTriangles ||
-        out_.vertices.size() > 3 * raster::kMaxTriangles) {
+    triangles_ += out.triangles.size() - triangles_before;
+    vertices_ += out.vertices.size() - first;
+    if (triangles_ > raster::kMaxTriangles || vertices_ > 3 * raster::kMaxTriangles) {
       fail_mesh(geometry_.file, "has more than 10,000,000 triangles");
     }
+  }
+
+  // Gives each triangle vertices of its own, which are where the palette has its colour.
+  static void paint(const aiMesh& mesh, std::size_t first, std::size_t first_triangle,
+                    raster::Mesh& out) {
+    std::vector<raster::Mesh::Vertex> vertices;
+    for (std::size_t t = first_triangle; t < out.triangles.size(); ++t) {
+      std::array<unsigned, 3> corners{};
+      for (std::size_t i = 0; i < 3; ++i)
+        corners[i] = static_cast<unsigned>(out.triangles[t][i] - first);
+      const auto uv = place_in_palette(mesh, corners);
+      for (std::uint32_t& corner : out.triangles[t]) {
+        vertices.push_back(out.vertices[corner]);
+        vertices.back().uv = uv;
+        corner = static_cast<std::uint32_t>(first + vertices.size() - 1);
+      }
+    }
+    out.vertices.resize(first);
+    out.vertices.insert(out.vertices.end(), vertices.begin(), vertices.end());
   }
 
   void require_finite(const aiMesh& mesh) const {
@@ -155,7 +188,7 @@ class MeshCollector {
     const double length = norm(n);
     const bool is_usable = length > 0.0 && std::isfinite(length);
     copy_to(is_usable ? (1.0 / length) * n : Vec3{0.0, 0.0, 1.0}, v.normal.data());
-    v.uv = uv ? std::array<float, 2>{uv->x, uv->y} : projected(p, n);
+    v.uv = uv ? laid(*uv) : projected(p, n);
     if (!std::all_of(v.position.begin(), v.position.end(), is_near)) {
       fail_mesh(geometry_.file,
                 "has a vertex that is not finite, or farther than 1,000 km from the origin");
@@ -167,6 +200,12 @@ class MeshCollector {
     return v;
   }
 
+  std::array<float, 2> laid(const aiVector3D& uv) const {
+    if (texture_.over == TextureRepeat::kPerMetre) return {uv.x, uv.y};
+    return {uv.x * static_cast<float>(texture_.repeat_x),
+            uv.y * static_cast<float>(texture_.repeat_y)};
+  }
+
   // A box's mapping: seen along the axis that the surface faces most.
   std::array<float, 2> projected(const Vec3& p, const Vec3& n) const {
     const Vec3 a{std::abs(n.x), std::abs(n.y), std::abs(n.z)};
@@ -174,24 +213,25 @@ class MeshCollector {
     double v = -p.z;
     if (a.z >= a.x && a.z >= a.y) v = -p.y;
     if (a.x > a.y && a.x > a.z) u = p.y;
-    return {static_cast<float>(u * texture_.repeat_x_per_m),
-            static_cast<float>(v * texture_.repeat_y_per_m)};
+    return {static_cast<float>(u * texture_.repeat_x), static_cast<float>(v * texture_.repeat_y)};
   }
 
-  void add_face(const aiFace& face, std::size_t first, bool mirrored) {
+  static void add_face(const aiFace& face, std::size_t first, bool mirrored, raster::Mesh& out) {
     if (face.mNumIndices != 3) return;  // points and lines
     const auto base = static_cast<std::uint32_t>(first);
     std::array<std::uint32_t, 3> t{base + face.mIndices[0], base + face.mIndices[1],
                                    base + face.mIndices[2]};
     if (mirrored) std::swap(t[1], t[2]);
-    out_.triangles.push_back(t);
+    out.triangles.push_back(t);
   }
 
   const aiScene& scene_;
   const MeshGeometry& geometry_;
   TextureScale texture_;
-  raster::Mesh out_;
-  std::set<unsigned> materials_;
+  bool paints_;
+  std::map<Part, raster::Mesh> parts_;
+  std::size_t triangles_ = 0;
+  std::size_t vertices_ = 0;
 };
 
 void check_faces(const aiScene& scene, const std::filesystem::path& file) {
@@ -216,9 +256,14 @@ std::string type_of(const std::filesystem::path& file) {
 }
 
 // Leaves only the reader of a type: Assimp tries all of its fifty where the content is not what
-// the name says.
+// the name says. The last one of a type reads its latest version.
 void keep_reader(Assimp::Importer& importer, const std::string& type) {
-  const Assimp::BaseImporter* const wanted = importer.GetImporter(type.c_str());
+  const Assimp::BaseImporter* wanted = nullptr;
+  for (std::size_t i = 0; i < importer.GetImporterCount(); ++i) {
+    std::set<std::string> types;
+    importer.GetImporter(i)->GetExtensionList(types);
+    if (types.contains(type.substr(1))) wanted = importer.GetImporter(i);
+  }
   for (std::size_t i = importer.GetImporterCount(); i-- > 0;) {
     std::unique_ptr<Assimp::BaseImporter> reader(importer.GetImporter(i));
     if (reader.get() == wanted) {
@@ -229,45 +274,74 @@ void keep_reader(Assimp::Importer& importer, const std::string& type) {
   }
 }
 
-// Pictures are not used, but Assimp refuses a file in which one has no name. It skips libraries
-// that it does not know.
-void hide_pictures(std::string& collada) {
-  constexpr std::string_view kLibrary = "library_images", kUnknown = "library_hidden";
-  static_assert(kLibrary.size() == kUnknown.size());
-  for (std::size_t at = 0; (at = collada.find(kLibrary, at)) != std::string::npos;) {
-    collada.replace(at, kLibrary.size(), kUnknown);
-  }
-}
+// The other files that a mesh may be made of, by whatever path it names them.
+class CompanionFiles final : public Assimp::IOSystem {
+ public:
+  explicit CompanionFiles(MeshGeometry mesh) : mesh_(std::move(mesh)) {}
 
-std::unique_ptr<Assimp::Importer> import(const std::filesystem::path& file) try {
+  bool Exists(const char* name) const override { return find_companion(mesh_, name) != nullptr; }
+  char getOsSeparator() const override { return '/'; }
+  Assimp::IOStream* Open(const char* name, const char*) override {
+    const std::filesystem::path* const file = find_companion(mesh_, name);
+    if (file == nullptr) return nullptr;
+    std::string bytes = os::read_file(*file, kLargestMesh);
+    if (type_of(*file) == ".mtl") bytes = clean_library(bytes);
+    if (bytes.empty()) return nullptr;
+    auto* const copy = new std::uint8_t[bytes.size()];  // the stream deletes it
+    std::copy(bytes.begin(), bytes.end(), copy);
+    return new Assimp::MemoryIOStream(copy, bytes.size(), true);
+  }
+  void Close(Assimp::IOStream* stream) override { delete stream; }
+
+  std::uintmax_t bytes() const {
+    std::uintmax_t sum = 0;
+    std::error_code ignored;
+    for (const std::filesystem::path& file : mesh_.companions)
+      if (const auto size = std::filesystem::file_size(file, ignored); !ignored) sum += size;
+    return sum;
+  }
+
+ private:
+  MeshGeometry mesh_;
+};
+
+}  // namespace
+
+struct MeshFiles::Imported {
+  explicit Imported(const MeshGeometry& mesh) : companions(mesh) { read(mesh.file); }
+
+  CompanionFiles companions;
+  Assimp::Importer importer;
+
+ private:
+  void read(const std::filesystem::path& file);
+};
+
+void MeshFiles::Imported::read(const std::filesystem::path& file) try {
   std::string bytes = os::read_file(file, kLargestMesh);
   const std::string type = type_of(file);
-  if (type == ".dae") {
-    check_collada(bytes, file);
-    hide_pictures(bytes);
-  }
-  auto importer = std::make_unique<Assimp::Importer>();
-  keep_reader(*importer, type);
-  importer->SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
+  if (type == ".dae") check_collada(bytes, file);
+  if (type == ".glb" || type == ".gltf") check_gltf(bytes, bytes.size() + companions.bytes(), file);
+  keep_reader(importer, type);
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   // Submeshes go by the names of nodes, as in Gazebo, not by their ids.
-  importer->SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);
-  importer->SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
-  // Of these bytes alone: a file could name any other. The importer deletes the object in the end,
-  // but would leave it if it got another now; it does not read again.
-  importer->SetIOHandler(new Assimp::MemoryIOSystem(
-      reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(), nullptr));
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
+  // A file could name any other. The importer deletes the object in the end, but would leave it if
+  // it got another now; it does not read again.
+  importer.SetIOHandler(new Assimp::MemoryIOSystem(
+      reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(), &companions));
   const std::string name_of_bytes = AI_MEMORYIO_MAGIC_FILENAME + type;
-  const aiScene* scene = importer->ReadFile(name_of_bytes, 0);
+  const aiScene* scene = importer.ReadFile(name_of_bytes, 0);
   if (!scene || !scene->mRootNode) {
-    std::string why = importer->GetErrorString();
+    std::string why = importer.GetErrorString();
     if (const std::size_t at = why.find(name_of_bytes); at != std::string::npos) {
       why.replace(at, name_of_bytes.size(), file.filename().string());
     }
     fail_mesh(file, "cannot be read as a mesh: " + why);
   }
   check_faces(*scene, file);
-  importer->ApplyPostProcessing(aiProcess_Triangulate | aiProcess_FlipUVs);
-  return importer;
+  importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_FlipUVs);
 } catch (const Error&) {
   throw;
 } catch (const std::bad_alloc&) {
@@ -275,6 +349,8 @@ std::unique_ptr<Assimp::Importer> import(const std::filesystem::path& file) try 
 } catch (const std::exception& error) {  // of a step of Assimp that catches none itself
   fail_mesh(file, "cannot be read as a mesh: " + std::string(error.what()));
 }
+
+namespace {
 
 bool has_area(const raster::Mesh& mesh) {
   return std::ranges::any_of(mesh.triangles, [&](const auto& triangle) {
@@ -286,14 +362,37 @@ bool has_area(const raster::Mesh& mesh) {
   });
 }
 
-// Moves the middle of its extent to the origin.
-void center(raster::Mesh& mesh) {
+// Moves the middle of their extent to the origin.
+void center(std::map<MeshCollector::Part, raster::Mesh>& parts) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto place = [axis](const raster::Mesh::Vertex& v) { return v.position[axis]; };
-    const auto [least, most] = std::ranges::minmax_element(mesh.vertices, {}, place);
-    const float middle = 0.5F * (place(*least) + place(*most));
-    for (raster::Mesh::Vertex& v : mesh.vertices) v.position[axis] -= middle;
+    const auto place = [axis](raster::Mesh::Vertex& v) -> float& { return v.position[axis]; };
+    float least = std::numeric_limits<float>::infinity(), most = -least;
+    for (auto& [part, mesh] : parts) {
+      for (raster::Mesh::Vertex& v : mesh.vertices) {
+        least = std::min(least, place(v));
+        most = std::max(most, place(v));
+      }
+    }
+    const float middle = 0.5F * (least + most);
+    for (auto& [part, mesh] : parts)
+      for (raster::Mesh::Vertex& v : mesh.vertices) place(v) -= middle;
   }
+}
+
+std::map<MeshCollector::Part, raster::Mesh> collect(const aiScene& scene, const MeshGeometry& mesh,
+                                                    const TextureScale& scale, bool paints) {
+  MeshCollector collector(scene, mesh, scale, paints);
+  collector.visit(*scene.mRootNode, aiMatrix4x4(), false);
+  auto parts = collector.take();
+  if (parts.empty() && !mesh.submesh.empty()) {
+    throw Error(ErrorCode::kBadFile, {mesh.file.string(), 0},
+                "has no submesh '" + mesh.submesh + "'")
+        .about(mesh.submesh);
+  }
+  if (std::ranges::none_of(parts, [](const auto& part) { return has_area(part.second); }))
+    fail_mesh(mesh.file, "has no triangle with an area");
+  if (mesh.is_centered) center(parts);
+  return parts;
 }
 
 }  // namespace
@@ -303,48 +402,62 @@ MeshFiles::~MeshFiles() = default;
 MeshFiles::MeshFiles(MeshFiles&&) noexcept = default;
 MeshFiles& MeshFiles::operator=(MeshFiles&&) noexcept = default;
 
-const Assimp::Importer& MeshFiles::imported(const std::filesystem::path& file) const {
-  std::unique_ptr<Assimp::Importer>& importer = files_[file];
-  if (!importer) importer = import(file);
-  return *importer;
+const aiScene& MeshFiles::imported(const MeshGeometry& mesh) const {
+  std::unique_ptr<Imported>& imported = files_[mesh.file];
+  if (!imported) imported = std::make_unique<Imported>(mesh);
+  return *imported->importer.GetScene();
 }
 
-raster::Mesh MeshFiles::load(const MeshGeometry& mesh, const TextureScale& scale,
-                             const WarningSink& warn) const {
-  const aiScene& scene = *imported(mesh.file).GetScene();
-  MeshCollector collector(scene, mesh, scale);
-  collector.visit(*scene.mRootNode, aiMatrix4x4(), false);
-  if (collector.materials() > 1) {
-    warn({Consequence::kLooksDifferent,
-          {mesh.file.string()},
-          "mesh",
-          "has several materials, which are not used; the visual's material is",
-          true});
+raster::Mesh MeshFiles::load(const MeshGeometry& mesh, const TextureScale& scale) const {
+  raster::Mesh all;
+  for (const auto& [part, some] : collect(imported(mesh), mesh, scale, false)) {
+    const auto before = static_cast<std::uint32_t>(all.vertices.size());
+    all.vertices.insert(all.vertices.end(), some.vertices.begin(), some.vertices.end());
+    for (const auto& [a, b, c] : some.triangles)
+      all.triangles.push_back({before + a, before + b, before + c});
   }
-  raster::Mesh out = collector.take();
-  if (out.triangles.empty() && !mesh.submesh.empty()) {
-    throw Error(ErrorCode::kBadFile, {mesh.file.string(), 0},
-                "has no submesh '" + mesh.submesh + "'")
-        .about(mesh.submesh);
+  return all;
+}
+
+std::vector<MeshPart> MeshFiles::parts(const MeshGeometry& mesh, const WarningSink& warn) const {
+  const aiScene& scene = imported(mesh);
+  std::vector<MeshPart> parts;
+  for (auto& [part, triangles] : collect(scene, mesh, {}, true)) {
+    MeshPart& out = parts.emplace_back();
+    out.mesh = std::move(triangles);
+    if (part.material < scene.mNumMaterials)
+      out.look = read_look(scene, *scene.mMaterials[part.material], mesh, warn);
+    if (part.is_painted) out.look.picture = palette();
+    if (out.look.material.is_double_sided) add_inside(out.mesh);
   }
-  if (!has_area(out)) fail_mesh(mesh.file, "has no triangle with an area");
-  if (mesh.is_centered) center(out);
-  return out;
+  return parts;
+}
+
+const std::vector<std::vector<Vec3>>& MeshFiles::pieces_of(const MeshGeometry& any) const {
+  MeshGeometry mesh = any;
+  mesh.piece.reset();
+  const auto known = pieces_.find(key_of(mesh));
+  if (known != pieces_.end()) return known->second;
+  return pieces_.emplace(key_of(mesh), connected_pieces(load(mesh, {}))).first->second;
+}
+
+std::size_t MeshFiles::pieces(const MeshGeometry& mesh) const {
+  return pieces_of(mesh).size();
 }
 
 std::vector<Vec3> MeshFiles::corners(const MeshGeometry& mesh) const {
-  std::vector<std::array<float, 3>> places;
-  for (const raster::Mesh::Vertex& v : load(mesh, {}, [](const Warning&) {}).vertices) {
-    places.push_back(v.position);
-  }
-  std::sort(places.begin(), places.end());
-  places.erase(std::unique(places.begin(), places.end()), places.end());
-  if (places.size() > kMaxHullCorners) {
+  std::vector<Vec3> corners;
+  const std::vector<std::vector<Vec3>>& pieces = pieces_of(mesh);
+  for (std::size_t i = 0; i < pieces.size(); ++i)
+    if (!mesh.piece || *mesh.piece == i)
+      corners.insert(corners.end(), pieces[i].begin(), pieces[i].end());
+  if (corners.size() > kMaxHullCorners) {
     fail_mesh(mesh.file, "has more than 1,000,000 vertices, which is too many for a collision");
   }
-  std::vector<Vec3> corners;
-  for (const auto& [x, y, z] : places) corners.push_back({x, y, z});
-  return corners;
+  const auto in_order = [](const Vec3& p) { return std::tuple{p.x, p.y, p.z}; };
+  std::ranges::sort(corners, {}, in_order);
+  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+  return with_volume(corners);
 }
 
 }  // namespace tether::sim

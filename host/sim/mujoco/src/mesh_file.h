@@ -1,5 +1,6 @@
 #pragma once
 
+#include "mesh_look.h"
 #include "triangle_mesh.h"
 
 #include <filesystem>
@@ -10,11 +11,13 @@
 #include <tether/sim/mesh_key.h>
 #include <tether/sim/world.h>
 
-namespace Assimp {
-class Importer;
-}
-
 namespace tether::sim {
+
+/// What of a mesh file looks the same.
+struct MeshPart {
+  raster::Mesh mesh;
+  MeshLook look;
+};
 
 /// Reads mesh files, each once, and keeps what is in them. One thread at a time.
 class MeshFiles {
@@ -24,26 +27,38 @@ class MeshFiles {
   MeshFiles(MeshFiles&&) noexcept;
   MeshFiles& operator=(MeshFiles&&) noexcept;
 
-  /// The triangles of an OBJ, STL or COLLADA file, scaled, in the file's own axes (a COLLADA "up"
+  /// The triangles of an OBJ, STL, COLLADA or glTF file, scaled, in the file's own axes (an "up"
   /// axis is not applied, as in Gazebo). Keeps the file's texture coordinates; where it has none,
-  /// the texture is projected along the main axis of each face. The file's own materials are not
-  /// used; several ones cause a warning. No other file is opened, whatever this one names.
+  /// the texture is projected along the main axis of each face. No other file is opened than the
+  /// mesh's companions, whatever this one names.
   /// @throws Error(kBadFile) with the file, about the submesh, if the file cannot be read, is
   /// larger than 512 MiB, has no such submesh, no triangle with an area, a number that is not
   /// finite or too large, a face of more than 1000 corners, or more triangles than the renderer
   /// takes.
-  raster::Mesh load(const MeshGeometry& mesh, const TextureScale& scale,
-                    const WarningSink& warn) const;
+  raster::Mesh load(const MeshGeometry& mesh, const TextureScale& scale) const;
+
+  /// The same triangles, by the materials of the file, with how each looks. A surface that is seen
+  /// from both sides has each triangle twice.
+  /// @throws Error(kBadFile) as `load`.
+  std::vector<MeshPart> parts(const MeshGeometry& mesh, const WarningSink& warn) const;
 
   /// Where the mesh has vertices, each place once, in the order of x, y, z: what its convex hull
-  /// is made of.
+  /// is made of. A flat mesh, which has no hull, gets a thickness of 2 mm.
   /// @throws Error(kBadFile) as `load`, and for more than 1,000,000.
   std::vector<uav::Vec3> corners(const MeshGeometry& mesh) const;
 
- private:
-  const Assimp::Importer& imported(const std::filesystem::path& file) const;
+  /// How many pieces the mesh consists of, whose triangles have no corner at the same place: walls
+  /// of a house, for example. `MeshGeometry::piece` selects one for `corners`.
+  std::size_t pieces(const MeshGeometry& mesh) const;
 
-  mutable std::map<std::filesystem::path, std::unique_ptr<Assimp::Importer>> files_;
+ private:
+  struct Imported;
+  const aiScene& imported(const MeshGeometry& mesh) const;
+
+  const std::vector<std::vector<uav::Vec3>>& pieces_of(const MeshGeometry& any) const;
+
+  mutable std::map<std::filesystem::path, std::unique_ptr<Imported>> files_;
+  mutable std::map<MeshKey, std::vector<std::vector<uav::Vec3>>> pieces_;
 };
 
 }  // namespace tether::sim

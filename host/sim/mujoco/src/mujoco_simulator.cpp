@@ -2,6 +2,7 @@
 #include "dynamics.h"
 #include "renderer.h"
 #include "scene.h"
+#include "usable_meshes.h"
 
 #include <algorithm>
 #include <utility>
@@ -17,9 +18,15 @@ namespace {
 struct Parts {
   // Keeps the files of meshes only until all parts have read them.
   Parts(World read, const WarningSink& warn, const MeshFiles& meshes = MeshFiles())
-      : world(std::move(read)),
+      : world(usable(std::move(read), meshes, warn)),
         dynamics(world, warn, meshes),
         scene(std::make_shared<const raster::Scene>(make_scene(world, warn, meshes))) {}
+
+  static World usable(World world, const MeshFiles& meshes, const WarningSink& warn) {
+    leave_out_unusable_meshes(world, meshes, warn);
+    split_collisions(world, meshes);
+    return world;
+  }
 
   World world;
   Dynamics dynamics;

@@ -21,22 +21,6 @@ namespace {
 using uav::Pose;
 using uav::Vec3;
 
-// Whether points lie in a plane: no convex hull is found for them. @pre There are points.
-bool is_flat(const std::vector<Vec3>& points) {
-  constexpr double kFlat = 1e-6;  // of their length
-  const auto most = [&](const auto& measure) {
-    return *std::ranges::max_element(points, {}, measure);
-  };
-  const Vec3 a = points.front();
-  const Vec3 b = most([&](const Vec3& p) { return norm(p - a); });
-  const Vec3 c = most([&](const Vec3& p) { return norm(cross(b - a, p - a)); });
-  const Vec3 normal = cross(b - a, c - a);
-  const auto volume_m3 = [&](const Vec3& p) { return std::abs(dot(normal, p - a)); };
-  const double length_m = norm(b - a);
-  return norm(normal) <= kFlat * length_m * length_m ||
-         volume_m3(most(volume_m3)) <= kFlat * length_m * norm(normal);
-}
-
 // MuJoCo's MJCF, written piece by piece. Numbers are written so that they read back exactly.
 class PhysicsXml {
  public:
@@ -70,12 +54,12 @@ class PhysicsXml {
 
   std::string text(const World& world) const {
     return fmt::format(R"(<mujoco><compiler angle="radian" inertiafromgeom="false"/>)"
-                       R"(<option timestep="{}" gravity="0 0 {}" integrator="Euler">)"
+                       R"(<option timestep="{}" gravity="{} {} {}" integrator="Euler">)"
                        R"(<flag equality="disable" limit="disable" passive="disable"/></option>)"
                        R"(<size nconmax="{}" njmax="{}"/>)"
                        "<asset>{}</asset><worldbody>{}</worldbody></mujoco>",
-                       to_seconds(world.step), -world.gravity_m_s2, kMaxContacts, 4 * kMaxContacts,
-                       assets_, body_);
+                       to_seconds(world.step), world.gravity_x_m_s2, world.gravity_y_m_s2,
+                       -world.gravity_m_s2, kMaxContacts, 4 * kMaxContacts, assets_, body_);
   }
 
  private:
@@ -138,31 +122,22 @@ class PhysicsXml {
   }
 
   std::string describe(const MeshGeometry& mesh, const Pose& X, const Collision& collision) {
-    warn_({Consequence::kBehavesDifferent,
-           {mesh.file.string()},
-           fmt::format("collision '{}'", collision.name),
-           "collides as the convex hull of its mesh"});
+    if (mesh.piece.value_or(0) == 0)
+      warn_({Consequence::kBehavesDifferent,
+             {mesh.file.string()},
+             fmt::format("collision '{}'", collision.name),
+             mesh.piece ? "collides as the convex hull of each connected piece of its mesh"
+                        : "collides as the convex hull of its mesh"});
     const auto [known, is_new] = meshes_.try_emplace(key_of(mesh), meshes_.size());
     const std::string name = fmt::format("m{}", known->second);
     if (is_new) {
       std::string vertices;
-      for (const Vec3& v : read_named(mesh.named_at, [&] { return corners(mesh, collision); })) {
+      for (const Vec3& v : read_named(mesh.named_at, [&] { return mesh_files_.corners(mesh); })) {
         fmt::format_to(std::back_inserter(vertices), "{} {} {} ", v.x, v.y, v.z);
       }
       assets_ += fmt::format(R"(<mesh name="{}" vertex="{}"/>)", name, vertices);
     }
     return fmt::format(R"(type="mesh" {} mesh="{}")", place(X), name);
-  }
-
-  std::vector<Vec3> corners(const MeshGeometry& mesh, const Collision& collision) const {
-    std::vector<Vec3> corners = mesh_files_.corners(mesh);
-    if (is_flat(corners)) {
-      throw Error(ErrorCode::kBadFile, FileLocation{mesh.file.string()},
-                  fmt::format("is flat, so that collision '{}' has no volume: give the mesh a "
-                              "thickness, or use a thin <box>",
-                              collision.name));
-    }
-    return corners;
   }
 
   const MeshFiles& mesh_files_;

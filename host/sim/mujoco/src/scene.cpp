@@ -8,8 +8,10 @@
 
 #include <algorithm>
 #include <map>
+#include <memory>
 #include <optional>
 #include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -28,21 +30,63 @@ raster::Rgb rgb(const Vec3& v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
+// Each pixel is the mean of four.
+raster::Texture halved(const raster::Texture& in) {
+  raster::Texture out{std::max(1, in.width_px / 2), std::max(1, in.height_px / 2), {}};
+  const auto byte = [&](int x, int y, std::size_t channel) {
+    const auto column = static_cast<std::size_t>(std::min(x, in.width_px - 1));
+    const auto row = static_cast<std::size_t>(std::min(y, in.height_px - 1));
+    return int{in.rgba[4 * (row * static_cast<std::size_t>(in.width_px) + column) + channel]};
+  };
+  for (int y = 0; y < out.height_px; ++y)
+    for (int x = 0; x < out.width_px; ++x)
+      for (std::size_t c = 0; c < 4; ++c)
+        out.rgba.push_back(static_cast<std::uint8_t>(
+            (byte(2 * x, 2 * y, c) + byte(2 * x + 1, 2 * y, c) + byte(2 * x, 2 * y + 1, c) +
+             byte(2 * x + 1, 2 * y + 1, c) + 2) /
+            4));
+  return out;
+}
+
+// Of a part of a mesh, in SceneParts.
+struct PartNumbers {
+  std::size_t mesh;
+  std::size_t material;
+};
+
+constexpr Vec3 kWhite{1.0, 1.0, 1.0};
+
+raster::Material tinted(raster::Material material, const Material& tint) {
+  const auto scale = [](raster::Rgb& colour, const Vec3& by) {
+    const raster::Rgb factor = rgb(by);
+    for (std::size_t i = 0; i < 3; ++i) colour[i] = std::min(1.0F, colour[i] * factor[i]);
+  };
+  scale(material.diffuse, tint.diffuse_rgb);
+  scale(material.ambient, tint.ambient_rgb);
+  material.alpha *= static_cast<float>(tint.alpha);
+  return material;
+}
+
 class SceneBuilder {
  public:
-  SceneBuilder(const MeshFiles& mesh_files, const WarningSink& warn)
-      : mesh_files_(mesh_files), warn_(warn) {}
+  SceneBuilder(const MeshFiles& mesh_files, bool is_strict, const WarningSink& warn)
+      : mesh_files_(mesh_files), is_strict_(is_strict), warn_(warn) {}
 
   void add_link(const Link& link, const Pose& X, std::optional<std::size_t> body,
                 std::uint32_t entity) {
     for (const Visual& visual : link.visuals) {
       raster::Instance instance;
-      instance.mesh = mesh_of(visual);
-      instance.material = parts_.materials.size();
       instance.body = body;
       instance.X_BV = X * visual.X_LV;
       instance.cast_shadows = visual.cast_shadows;
       instance.entity = entity;
+      const auto* mesh = std::get_if<MeshGeometry>(&visual.geometry);
+      if (mesh != nullptr && visual.has_look_of_mesh) {
+        add_parts(*mesh, visual.material, instance);
+        continue;
+      }
+      instance.mesh = mesh_of(visual);
+      instance.material = parts_.materials.size();
       parts_.materials.push_back(material_of(visual.material));
       parts_.instances.push_back(instance);
     }
@@ -86,11 +130,51 @@ class SceneBuilder {
  private:
   static float factor(double attenuation) { return static_cast<float>(std::min(attenuation, 1e6)); }
 
+  // A mesh with the looks of its file: an instance for each of its materials.
+  void add_parts(const MeshGeometry& geometry, const Material& tint, raster::Instance instance) {
+    read_named(geometry.named_at, [&] {
+      const auto [known, is_new] = looks_.try_emplace(key_of(geometry));
+      if (is_new)
+        for (MeshPart& part : mesh_files_.parts(geometry, warn_)) add_part(part, known->second);
+      for (const auto& [mesh, material] : known->second) {
+        count_triangles(geometry, parts_.meshes[mesh]);
+        instance.mesh = mesh;
+        instance.material = material;
+        if (tint.alpha != 1.0 || tint.diffuse_rgb != kWhite || tint.ambient_rgb != kWhite) {
+          instance.material = parts_.materials.size();
+          parts_.materials.push_back(tinted(parts_.materials[material], tint));
+        }
+        parts_.instances.push_back(instance);
+      }
+    });
+  }
+
+  void add_part(MeshPart& part, std::vector<PartNumbers>& numbers) {
+    raster::Material material = material_of(part.look.material);
+    if (part.look.picture) {
+      const auto [known, is_new] = pictures_.try_emplace(part.look.picture);
+      if (is_new) {
+        add_texture(*part.look.picture);
+        known->second = parts_.textures.size() - 1;
+      }
+      material.texture = known->second;
+    }
+    numbers.push_back({add_mesh(std::move(part.mesh)), parts_.materials.size()});
+    parts_.materials.push_back(material);
+  }
+
+  std::size_t add_mesh(raster::Mesh mesh) {
+    parts_.meshes.push_back(std::move(mesh));
+    return parts_.meshes.size() - 1;
+  }
+
   std::size_t mesh_of(const Visual& visual) {
-    const TextureScale scale{visual.material.texture_repeat_x, visual.material.texture_repeat_y};
+    const Material& material = visual.material;
+    const TextureScale scale{material.texture_repeat_x, material.texture_repeat_y,
+                             material.texture_repeat};
     const auto add = [&](raster::Mesh mesh) {
-      parts_.meshes.push_back(std::move(mesh));
-      return parts_.meshes.size() - 1;
+      if (material.is_double_sided) add_inside(mesh);
+      return add_mesh(std::move(mesh));
     };
     return std::visit(
         Visitor{
@@ -107,10 +191,11 @@ class SceneBuilder {
             [&](const EllipsoidGeometry& g) { return add(ellipsoid_mesh(g.radii_m, scale)); },
             [&](const PlaneGeometry& g) { return add(plane_mesh(g, scale)); },
             [&](const MeshGeometry& g) {
-              const std::tuple key{key_of(g), scale.repeat_x_per_m, scale.repeat_y_per_m};
+              const std::tuple key{key_of(g), scale.repeat_x, scale.repeat_y, scale.over,
+                                   material.is_double_sided};
               return read_named(g.named_at, [&] {
                 const auto [known, is_new] = meshes_.try_emplace(key);
-                if (is_new) known->second = add(mesh_files_.load(g, scale, warn_));
+                if (is_new) known->second = add(mesh_files_.load(g, scale));
                 count_triangles(g, parts_.meshes[known->second]);
                 return known->second;
               });
@@ -142,33 +227,61 @@ class SceneBuilder {
     return material;
   }
 
-  std::size_t texture_of(const std::filesystem::path& file) {
+  // None: it cannot be read, and the world goes without it.
+  std::optional<std::size_t> texture_of(const std::filesystem::path& file) {
     const auto [known, is_new] = textures_.try_emplace(file);
     if (!is_new) return known->second;
-    known->second = parts_.textures.size();
-    parts_.textures.push_back(load_texture(file, warn_));
-    texels_ += parts_.textures.back().rgba.size() / 4;
-    if (texels_ > raster::kMaxTexels) {
-      throw Error(ErrorCode::kBadFile, FileLocation{file.string()},
-                  "brings the world's textures to more than 67,108,864 pixels");
+    try {
+      add_texture(load_texture(file, warn_));
+      known->second = parts_.textures.size() - 1;
+    } catch (const Error& error) {
+      if (is_strict_ || error.code() != ErrorCode::kBadFile) throw;
+      warn_({Consequence::kLooksDifferent,
+             {file.string()},
+             "texture",
+             std::string("cannot be used, and the colours are: ") + error.what(),
+             true});
     }
     return known->second;
   }
 
+  // Where all of them have more pixels than the renderer takes, the largest ones are halved.
+  void add_texture(raster::Texture texture) {
+    texels_ += texture.rgba.size() / 4;
+    parts_.textures.push_back(std::move(texture));
+    while (texels_ > raster::kMaxTexels) {
+      const auto size = [](const raster::Texture& t) { return t.rgba.size(); };
+      raster::Texture& largest = *std::ranges::max_element(parts_.textures, {}, size);
+      texels_ -= largest.rgba.size() / 4;
+      largest = halved(largest);
+      texels_ += largest.rgba.size() / 4;
+      if (!std::exchange(has_halved_, true))
+        warn_({Consequence::kLooksDifferent,
+               {},
+               "textures",
+               "have more than 67,108,864 pixels together: the largest are drawn at half their "
+               "size"});
+    }
+  }
+
   const MeshFiles& mesh_files_;
+  bool is_strict_;
   const WarningSink& warn_;
   raster::SceneParts parts_;
   std::size_t triangles_ = 0;
   std::size_t texels_ = 0;
-  std::map<std::tuple<MeshKey, double, double>, std::size_t> meshes_;
-  std::map<std::filesystem::path, std::size_t> textures_;
+  bool has_halved_ = false;
+  std::map<std::tuple<MeshKey, double, double, TextureRepeat, bool>, std::size_t> meshes_;
+  std::map<MeshKey, std::vector<PartNumbers>> looks_;
+  std::map<std::shared_ptr<const raster::Texture>, std::size_t> pictures_;  // never walked through
+  std::map<std::filesystem::path, std::optional<std::size_t>> textures_;
 };
 
 }  // namespace
 
 raster::SceneParts make_scene(const World& world, const WarningSink& warn,
                               const MeshFiles& meshes) {
-  SceneBuilder builder(meshes, warn);
+  SceneBuilder builder(meshes, world.is_strict, warn);
   const auto number_of = [&](const Model* model) {
     return static_cast<std::uint32_t>(model - world.models.data()) + 1;
   };

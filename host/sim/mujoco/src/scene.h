@@ -10,10 +10,12 @@ namespace tether::sim {
 /// The world's visuals and lights for the renderer. An instance's body is one of `moving_bodies`;
 /// its entity is the number of its model, from 1 on: the world's models, then the UAVs.
 ///
-/// Warns of lights beyond the 32nd, of point lights that should cast shadows, and of damaged
-/// textures.
-/// @throws Error(kBadFile) where the world names a mesh or texture that cannot be read, or with
-/// which the scene has more triangles or pixels of textures than the renderer takes.
+/// Warns of lights beyond the 32nd, of point lights that should cast shadows, of damaged textures,
+/// of textures that are halved because all have too many pixels, and of those that cannot be read,
+/// unless the world is read strictly.
+/// @throws Error(kBadFile) where the world names a mesh that cannot be read, or with which the
+/// scene has more triangles than the renderer takes; of a strict world, a texture that cannot be
+/// read.
 raster::SceneParts make_scene(const World& world, const WarningSink& warn,
                               const MeshFiles& meshes = MeshFiles());
 

@@ -29,7 +29,7 @@ raster::Texture sized(const std::filesystem::path& file, std::int64_t width, std
   return texture;
 }
 
-raster::Texture read_png(const std::filesystem::path& file, const std::string& bytes) {
+raster::Texture read_png(const std::filesystem::path& file, std::string_view bytes) {
   png_image image{};
   image.version = PNG_IMAGE_VERSION;
   const std::unique_ptr<png_image, decltype(&png_image_free)> owner(&image, &png_image_free);
@@ -45,7 +45,7 @@ raster::Texture read_png(const std::filesystem::path& file, const std::string& b
   return texture;
 }
 
-raster::Texture read_jpeg(const std::filesystem::path& file, const std::string& bytes,
+raster::Texture read_jpeg(const std::filesystem::path& file, std::string_view bytes,
                           const WarningSink& warn) {
   const std::unique_ptr<void, decltype(&tjDestroy)> reader(tjInitDecompress(), &tjDestroy);
   const auto* const data = reinterpret_cast<const unsigned char*>(bytes.data());
@@ -74,7 +74,11 @@ raster::Texture read_jpeg(const std::filesystem::path& file, const std::string& 
 }  // namespace
 
 raster::Texture load_texture(const std::filesystem::path& file, const WarningSink& warn) {
-  const std::string bytes = os::read_file(file, kLargestTexture);
+  return decode_texture(os::read_file(file, kLargestTexture), file, warn);
+}
+
+raster::Texture decode_texture(std::string_view bytes, const std::filesystem::path& file,
+                               const WarningSink& warn) {
   if (bytes.empty()) fail_texture(file, "is empty");
   return bytes.starts_with("\xff\xd8") ? read_jpeg(file, bytes, warn) : read_png(file, bytes);
 }

@@ -52,7 +52,8 @@ void add_rectangle(raster::Mesh& mesh, const Vec3& centre, const Vec3& right, do
   for (const double y : {0.0, height_m}) {
     for (const double x : {0.0, width_m}) {
       mesh.vertices.push_back(make_vertex(corner + x * right + y * down, normal,
-                                          x * scale.repeat_x_per_m, y * scale.repeat_y_per_m));
+                                          x > 0.0 ? scale.across(x) : 0.0,
+                                          y > 0.0 ? scale.down(y) : 0.0));
     }
   }
   add_lattice_triangles(mesh, first, 1, 1);
@@ -71,15 +72,18 @@ struct Ring {
 void add_revolution(raster::Mesh& mesh, const std::vector<Ring>& profile, double texture_radius_m,
                     const TextureScale& scale) {
   const std::size_t first = mesh.vertices.size();
+  const bool is_per_face = scale.over == TextureRepeat::kPerFace;
+  const double whole = is_per_face ? profile.back().distance_m : 1.0;
   for (const Ring& ring : profile) {
     for (int i = 0; i <= kSlices; ++i) {
       const double angle = 2.0 * std::numbers::pi * i / kSlices;
       const double c = std::cos(angle);
       const double s = std::sin(angle);
-      mesh.vertices.push_back(make_vertex({ring.radius_m * c, ring.radius_m * s, ring.z_m},
-                                          {ring.normal_r * c, ring.normal_r * s, ring.normal_z},
-                                          angle * texture_radius_m * scale.repeat_x_per_m,
-                                          ring.distance_m * scale.repeat_y_per_m));
+      mesh.vertices.push_back(make_vertex(
+          {ring.radius_m * c, ring.radius_m * s, ring.z_m},
+          {ring.normal_r * c, ring.normal_r * s, ring.normal_z},
+          is_per_face ? scale.repeat_x * i / kSlices : angle * texture_radius_m * scale.repeat_x,
+          ring.distance_m / whole * scale.repeat_y));
     }
   }
   add_lattice_triangles(mesh, first, static_cast<int>(profile.size()) - 1, kSlices);
@@ -92,11 +96,14 @@ void add_disc(raster::Mesh& mesh, double radius_m, double z_m, double up,
   const Ring rim{radius_m, z_m, 0.0, up, 0.0};
   const std::vector<Ring> profile = up > 0.0 ? std::vector{centre, rim} : std::vector{rim, centre};
   const std::size_t first = mesh.vertices.size();
-  add_revolution(mesh, profile, 1.0, scale);
+  add_revolution(mesh, profile, 1.0, {});
+  const bool is_per_face = scale.over == TextureRepeat::kPerFace;
+  const double per_m = is_per_face ? 0.5 / radius_m : 1.0;
+  const auto corner = is_per_face ? 0.5F : 0.0F;
   for (std::size_t i = first; i < mesh.vertices.size(); ++i) {
     Vertex& vertex = mesh.vertices[i];
-    vertex.uv[0] = vertex.position[0] * static_cast<float>(scale.repeat_x_per_m);
-    vertex.uv[1] = vertex.position[1] * static_cast<float>(-up * scale.repeat_y_per_m);
+    vertex.uv[0] = corner + vertex.position[0] * static_cast<float>(per_m * scale.repeat_x);
+    vertex.uv[1] = corner + vertex.position[1] * static_cast<float>(-up * per_m * scale.repeat_y);
   }
 }
 
@@ -126,8 +133,13 @@ raster::Mesh box_mesh(const Vec3& size_m, const TextureScale& scale) {
   add_rectangle(mesh, {-0.5 * x, 0.0, 0.0}, {0.0, -1.0, 0.0}, y, down, z, scale);
   add_rectangle(mesh, {0.0, 0.5 * y, 0.0}, {-1.0, 0.0, 0.0}, x, down, z, scale);
   add_rectangle(mesh, {0.0, -0.5 * y, 0.0}, {1.0, 0.0, 0.0}, x, down, z, scale);
-  add_rectangle(mesh, {0.0, 0.0, 0.5 * z}, {1.0, 0.0, 0.0}, x, {0.0, -1.0, 0.0}, y, scale);
-  add_rectangle(mesh, {0.0, 0.0, -0.5 * z}, {-1.0, 0.0, 0.0}, x, {0.0, -1.0, 0.0}, y, scale);
+  if (scale.over == TextureRepeat::kPerFace) {
+    add_rectangle(mesh, {0.0, 0.0, 0.5 * z}, {0.0, -1.0, 0.0}, y, {-1.0, 0.0, 0.0}, x, scale);
+    add_rectangle(mesh, {0.0, 0.0, -0.5 * z}, {0.0, -1.0, 0.0}, y, {1.0, 0.0, 0.0}, x, scale);
+  } else {
+    add_rectangle(mesh, {0.0, 0.0, 0.5 * z}, {1.0, 0.0, 0.0}, x, {0.0, -1.0, 0.0}, y, scale);
+    add_rectangle(mesh, {0.0, 0.0, -0.5 * z}, {-1.0, 0.0, 0.0}, x, {0.0, -1.0, 0.0}, y, scale);
+  }
   return mesh;
 }
 
@@ -154,7 +166,9 @@ raster::Mesh capsule_mesh(double radius_m, double length_m, const TextureScale& 
 
 raster::Mesh ellipsoid_mesh(const Vec3& radii_m, const TextureScale& scale) {
   const double mean_m = (radii_m.x + radii_m.y + radii_m.z) / 3.0;
-  const TextureScale unit{scale.repeat_x_per_m * mean_m, scale.repeat_y_per_m * mean_m};
+  TextureScale unit = scale;
+  if (scale.over == TextureRepeat::kPerMetre)
+    unit = {scale.repeat_x * mean_m, scale.repeat_y * mean_m};
   std::vector<Ring> profile;
   append_quarter(profile, 1.0, 0.0, 0.0, 0.0);
   append_quarter(profile, 1.0, 0.0, 0.5 * std::numbers::pi, 0.5 * std::numbers::pi);
@@ -175,6 +189,20 @@ raster::Mesh plane_mesh(const PlaneGeometry& plane, const TextureScale& scale) {
   add_rectangle(mesh, {}, rotate(q, {1.0, 0.0, 0.0}), plane.size_x_m, rotate(q, {0.0, -1.0, 0.0}),
                 plane.size_y_m, scale);
   return mesh;
+}
+
+void add_inside(raster::Mesh& mesh) {
+  const auto corners = static_cast<std::uint32_t>(mesh.vertices.size());
+  const std::size_t triangles = mesh.triangles.size();
+  for (std::uint32_t i = 0; i < corners; ++i) {
+    raster::Mesh::Vertex v = mesh.vertices[i];
+    for (float& part : v.normal) part = -part;
+    mesh.vertices.push_back(v);
+  }
+  for (std::size_t i = 0; i < triangles; ++i) {
+    const auto [a, b, c] = mesh.triangles[i];
+    mesh.triangles.push_back({corners + a, corners + c, corners + b});
+  }
 }
 
 uav::Quat rotation_from_z(const Vec3& normal) {

@@ -8,12 +8,20 @@ namespace tether::sim {
 
 /// How a surface's texture is laid on it.
 struct TextureScale {
-  double repeat_x_per_m = 1.0;
-  double repeat_y_per_m = 1.0;
+  double repeat_x = 1.0;
+  double repeat_y = 1.0;
+  TextureRepeat over = TextureRepeat::kPerMetre;
+
+  /// Repetitions over a length.
+  double across(double length_m) const { return repeat_x * count(length_m); }
+  double down(double length_m) const { return repeat_y * count(length_m); }
+
+ private:
+  double count(double length_m) const { return over == TextureRepeat::kPerMetre ? length_m : 1.0; }
 };
 
 /// Each face carries its texture upright (seen from outside, with z up), starting at its upper left
-/// corner.
+/// corner. Top and bottom: with +y up; counted per face, as Gazebo has them, with +x and −x up.
 raster::Mesh box_mesh(const uav::Vec3& size_m, const TextureScale& scale);
 /// The side unrolled around z; the caps flat.
 raster::Mesh cylinder_mesh(double radius_m, double length_m, const TextureScale& scale);
@@ -22,6 +30,9 @@ raster::Mesh capsule_mesh(double radius_m, double length_m, const TextureScale& 
 raster::Mesh ellipsoid_mesh(const uav::Vec3& radii_m, const TextureScale& scale);
 /// One-sided: seen from where `normal` points.
 raster::Mesh plane_mesh(const PlaneGeometry& plane, const TextureScale& scale);
+
+/// Adds the same triangles, seen from their other side.
+void add_inside(raster::Mesh& mesh);
 
 /// The rotation that turns z to `normal` (need not be unit; zero is taken as z).
 uav::Quat rotation_from_z(const uav::Vec3& normal);

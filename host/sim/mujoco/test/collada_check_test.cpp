@@ -22,15 +22,28 @@ std::string chain(int nodes, int times) {
 }
 
 TEST(ColladaCheck, TakesNodesThatOthersReferTo) {
-  check_collada(chain(150, 1), "a.dae");
-  check_collada(chain(16, 2), "a.dae");
+  for (std::string text : {chain(150, 1), chain(16, 2)}) {
+    const std::string before = text;
+    check_collada(text, "a.dae");
+    EXPECT_EQ(text, before);
+  }
+}
+
+TEST(ColladaCheck, ChangesWhatAssimpRefuses) {
+  std::string text =
+      "<a><vertices><!-- b --><input/></vertices><image id='i'/><color>\n 1 0 0 1</color></a>";
+  check_collada(text, "a.dae");
+  EXPECT_EQ(text.find("<!--"), std::string::npos);
+  EXPECT_NE(text.find("<init_from>no file</init_from>"), std::string::npos);
+  EXPECT_NE(text.find("<input/>"), std::string::npos);
+  EXPECT_NE(text.find("<color>1 0 0 1</color>"), std::string::npos);
 }
 
 TEST(ColladaCheck, RefusesCirclesDepthAndMultiplication) {
   const std::string circle =
       "<a><visual_scene>\n<node name='n'><node>\n<instance_node url='#n'/>"
       "</node></node></visual_scene></a>";
-  for (const std::string& text : {chain(210, 1), chain(20, 2), circle}) {
+  for (std::string text : {chain(210, 1), chain(20, 2), circle}) {
     const Error error = bad_file_error([&] { check_collada(text, "a.dae"); });
     EXPECT_EQ(error.where().file, "a.dae");
     EXPECT_GT(error.where().line, 1);
@@ -38,7 +51,7 @@ TEST(ColladaCheck, RefusesCirclesDepthAndMultiplication) {
 }
 
 TEST(ColladaCheck, RefusesWhatIsNotXml) {
-  for (const char* text : {"", "PK", "<a><b></a>"}) {
+  for (std::string text : {"", "PK", "<a><b></a>", "<!-- a -->"}) {
     EXPECT_EQ(bad_file_error([&] { check_collada(text, "a.dae"); }).where().file, "a.dae");
   }
 }

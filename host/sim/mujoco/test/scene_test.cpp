@@ -70,7 +70,7 @@ TEST(SceneTest, LightsThatFadeAtOnceOrNeverAreDrawn) {
   }
 }
 
-TEST(SceneTest, RefusesTexturesBeyondTheLimitWithTheFile) {
+TEST(SceneTest, HalvesTheLargestTexturesBeyondTheLimit) {
   const ScratchFolder scratch;
   const std::vector<std::uint8_t> grey(std::size_t{6000} * 6000, 90);
   png_image image{};
@@ -83,8 +83,52 @@ TEST(SceneTest, RefusesTexturesBeyondTheLimitWithTheFile) {
     ASSERT_NE(png_image_write_to_file(&image, file.c_str(), 0, grey.data(), 0, nullptr), 0);
     link->visuals[0].material.albedo_map = file;
   }
-  const Error error = bad_file_error([&] { make_scene(world, no_warnings()); });
-  EXPECT_EQ(error.where().file, world.uavs[0].body.visuals[0].material.albedo_map);
+  std::vector<Warning> warnings;
+  const raster::SceneParts scene =
+      make_scene(world, [&](const Warning& warning) { warnings.push_back(warning); });
+  ASSERT_EQ(scene.textures.size(), 2U);
+  EXPECT_EQ(std::min(scene.textures[0].width_px, scene.textures[1].width_px), 3000);
+  EXPECT_EQ(std::max(scene.textures[0].width_px, scene.textures[1].width_px), 6000);
+  for (const raster::Texture& texture : scene.textures) EXPECT_EQ(texture.rgba.back(), 255);
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_FALSE(warnings[0].can_change_verdict);
+}
+
+TEST(SceneTest, GoesWithoutAnUnreadableTextureUnlessStrict) {
+  const ScratchFolder scratch;
+  World world = test_world();
+  world.models[0].links[0].visuals[0].material.albedo_map = scratch.write("a.png", "no picture");
+  EXPECT_THAT(warnings_of(world), ElementsAre(HasSubstr("a.png")));
+  world.is_strict = true;
+  EXPECT_EQ(bad_file_error([&] { make_scene(world, no_warnings()); }).where().file,
+            world.models[0].links[0].visuals[0].material.albedo_map);
+}
+
+TEST(SceneTest, AMeshWithTheLookOfItsFileIsAnInstanceForEachMaterial) {
+  const ScratchFolder scratch;
+  MeshGeometry mesh{scratch.write("a.obj",
+                                  "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n"
+                                  "usemtl blue\nf 1 3 2\n"),
+                    "",
+                    {1.0, 1.0, 1.0}};
+  mesh.companions = {scratch.write("a.mtl", "newmtl red\nKd 1 0 0\nnewmtl blue\nKd 0 0 1\n")};
+  World world = test_world();
+  std::vector<Visual>& visuals = world.models[0].links[0].visuals;
+  visuals.resize(1);
+  visuals[0].geometry = mesh;
+  visuals[0].has_look_of_mesh = true;
+  visuals[0].material.diffuse_rgb = visuals[0].material.ambient_rgb = {1.0, 1.0, 1.0};
+  visuals.push_back(visuals[0]);
+  visuals[1].material.alpha = 0.5;
+  visuals[1].material.diffuse_rgb = {0.5, 0.5, 0.5};
+  const raster::SceneParts scene = make_scene(world, no_warnings());
+  ASSERT_EQ(scene.instances.size(), 4U + world.uavs[0].body.visuals.size());
+  EXPECT_EQ(scene.materials[scene.instances[0].material].diffuse, (raster::Rgb{1.0F, 0.0F, 0.0F}));
+  EXPECT_EQ(scene.materials[scene.instances[1].material].diffuse, (raster::Rgb{0.0F, 0.0F, 1.0F}));
+  EXPECT_EQ(scene.materials[scene.instances[1].material].alpha, 1.0F);
+  EXPECT_EQ(scene.instances[2].mesh, scene.instances[0].mesh) << "read once";
+  EXPECT_EQ(scene.materials[scene.instances[3].material].alpha, 0.5F);
+  EXPECT_EQ(scene.materials[scene.instances[3].material].diffuse, (raster::Rgb{0.0F, 0.0F, 0.5F}));
 }
 
 TEST(SceneTest, LightsKeepTheirKindAndDirection) {

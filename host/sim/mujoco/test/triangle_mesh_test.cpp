@@ -1,5 +1,6 @@
 #include "triangle_mesh.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -69,6 +70,43 @@ TEST(TriangleMeshTest, TextureCountsRepetitionsPerMetreAndStartsAtTheUpperLeft) 
     EXPECT_NEAR(v.uv[0], (v.position[1] + 2.0) * 0.5, 1e-5);
     EXPECT_NEAR(v.uv[1], (1.0 - v.position[2]) * 2.0, 1e-5);
   }
+}
+
+// Corners of the picture, by where Gazebo has them.
+TEST(TriangleMeshTest, OnceOnEachFaceAsGazeboHasIt) {
+  const TextureScale once{1.0, 1.0, TextureRepeat::kPerFace};
+  for (const raster::Mesh::Vertex& v : box_mesh({2.0, 4.0, 6.0}, once).vertices) {
+    const float x = v.position[0] / 2.0F, y = v.position[1] / 4.0F, z = v.position[2] / 6.0F;
+    if (v.normal[0] > 0.5F) {
+      EXPECT_NEAR(v.uv[0], 0.5F + y, 1e-6);
+      EXPECT_NEAR(v.uv[1], 0.5F - z, 1e-6);
+    } else if (v.normal[2] > 0.5F) {
+      EXPECT_NEAR(v.uv[0], 0.5F - y, 1e-6);
+      EXPECT_NEAR(v.uv[1], 0.5F - x, 1e-6);
+    }
+  }
+  const TextureScale twice{2.0, 1.0, TextureRepeat::kPerFace};
+  for (const raster::Mesh::Vertex& v : plane_mesh({{0.0, 0.0, 1.0}, 4.0, 10.0}, twice).vertices) {
+    EXPECT_NEAR(v.uv[0], 2.0F * (0.5F + v.position[0] / 4.0F), 1e-6);
+    EXPECT_NEAR(v.uv[1], 0.5F - v.position[1] / 10.0F, 1e-6);
+  }
+  for (const raster::Mesh& mesh : {cylinder_mesh(0.5, 4.0, once), capsule_mesh(0.5, 1.0, once),
+                                   ellipsoid_mesh({1.0, 2.0, 3.0}, once)}) {
+    for (std::size_t i = 0; i < 2; ++i) {
+      const auto at = [i](const raster::Mesh::Vertex& v) { return v.uv[i]; };
+      EXPECT_NEAR(std::ranges::min(mesh.vertices, {}, at).uv[i], 0.0F, 1e-5);
+      EXPECT_NEAR(std::ranges::max(mesh.vertices, {}, at).uv[i], 1.0F, 1e-5);
+    }
+  }
+}
+
+TEST(TriangleMeshTest, TheInsideIsTheOutsideTurned) {
+  raster::Mesh mesh = box_mesh({1.0, 1.0, 1.0}, {});
+  const std::size_t triangles = mesh.triangles.size();
+  add_inside(mesh);
+  EXPECT_EQ(mesh.triangles.size(), 2 * triangles);
+  EXPECT_NEAR(volume_m3(mesh), 0.0, 1e-6);
+  EXPECT_GT(worst_normal(mesh), 0.99);
 }
 
 TEST(TriangleMeshTest, PlaneLooksAlongItsNormal) {

@@ -87,7 +87,7 @@ void fields(auto& io, Is<Open> auto& m) {
   io("version", m.version);
   io("world_name", m.world_name, kName);
   io("world_file", m.world_file, kText);
-  io("gravity_m_s2", m.gravity_m_s2, wire::kPositive);
+  io("gravity_m_s2", m.gravity_m_s2, wire::kNotNegative);
   io("step_ns", m.step, step);
   io("uavs", m.uavs, kAnyBodies);
   io("bodies", m.bodies, kAnyBodies);

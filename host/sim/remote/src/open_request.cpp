@@ -35,7 +35,8 @@ std::vector<VisualMaterial> materials_of(const World& world) {
   }
   for (const Model& model : world.models) {
     for (const Link& link : model.links) {
-      for (const Visual& v : link.visuals) add_material(model.name, link.name, v, materials);
+      for (const Visual& v : link.visuals)
+        if (!v.material.is_of_script) add_material(model.name, link.name, v, materials);
     }
   }
   return materials;
@@ -82,6 +83,11 @@ protocol::Open make_open(const World& world, const WarningSink& warn) {
           {world.file.string()},
           "<wind>",
           "has no effect: only the embedded simulator simulates wind"});
+  if (world.gravity_x_m_s2 != 0.0 || world.gravity_y_m_s2 != 0.0)
+    warn({Consequence::kBehavesDifferent,
+          {world.file.string()},
+          "<gravity>",
+          "points straight down: only the embedded simulator simulates a tilted one"});
   const ViewSize size = largest_view(world);
   protocol::Open open;
   open.world_name = world.name;

@@ -90,14 +90,14 @@ std::string color(const std::string& name, const uav::Vec3& rgb) {
 
 std::string sdf(const Visual& visual) {
   const Material& m = visual.material;
-  return named(
-      "visual", visual.name,
-      element("pose", text(visual.X_LV)) +
-          element("cast_shadows", visual.cast_shadows ? "1" : "0") +
-          element("transparency", text(1.0 - m.alpha)) + sdf_geometry(visual.geometry) +
-          element("material", color("ambient", m.ambient_rgb) + color("diffuse", m.diffuse_rgb) +
-                                  color("specular", m.specular_rgb) +
-                                  color("emissive", m.emissive_rgb)));
+  const std::string material = element(
+      "material", color("ambient", m.ambient_rgb) + color("diffuse", m.diffuse_rgb) +
+                      color("specular", m.specular_rgb) + color("emissive", m.emissive_rgb));
+  return named("visual", visual.name,
+               element("pose", text(visual.X_LV)) +
+                   element("cast_shadows", visual.cast_shadows ? "1" : "0") +
+                   element("transparency", text(1.0 - m.alpha)) + sdf_geometry(visual.geometry) +
+                   (visual.has_look_of_mesh ? "" : material));
 }
 
 std::string sdf(const Collision& collision) {

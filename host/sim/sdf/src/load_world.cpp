@@ -19,10 +19,21 @@ using uav::Pose;
 
 namespace {
 
+/// Of a clear day, halfway up.
+constexpr uav::Vec3 kSky_rgb{0.55, 0.71, 0.89};
+
+/// Whether the model may move, by the number of links that do. Without --strict, it stays.
 /// @param before the world's moving links so far
-void require_few_moving_links(const SdfSource& source, const sdf::Model& model,
-                              std::size_t before) {
-  if (before + model.LinkCount() <= kMaxMovingLinks) return;
+bool may_move(const SdfSource& source, const sdf::Model& model, std::size_t before,
+              const WarningSink& warn) {
+  if (before + model.LinkCount() <= kMaxMovingLinks) return true;
+  if (source.options().is_tolerant) {
+    warn_at(
+        source, model.Element(), Consequence::kBehavesDifferent,
+        "does not move: more than " + std::to_string(kMaxMovingLinks) + " links of the world would",
+        warn);
+    return false;
+  }
   refuse(source, model.LinkByIndex(kMaxMovingLinks - before)->Element(),
          "exceeds the limit of " + std::to_string(kMaxMovingLinks) +
              " moving links of a world; make models that need not move <static>");
@@ -37,7 +48,7 @@ void add_model(const SdfSource& source, const sdf::Model& model, const Pose& X_W
   result.X_WM = X_WP * resolved_pose(source, model);
   result.is_static = parent_is_static || model.Static();
   if (!result.is_static) {
-    require_few_moving_links(source, model, moving_bodies(world).size());
+    result.is_static = !may_move(source, model, moving_bodies(world).size(), warn);
   }
   for (std::uint64_t i = 0; i < model.LinkCount(); ++i) {
     const sdf::Link& link = *model.LinkByIndex(i);
@@ -77,12 +88,13 @@ void warn_of_lost_motion(const SdfSource& source, const sdf::Model& model, bool 
   }
 }
 
-double read_gravity(const SdfSource& source, const sdf::World& world) {
-  const auto gravity = world.Gravity();
-  if (gravity.X() != 0.0 || gravity.Y() != 0.0 || gravity.Z() >= 0.0) {
-    refuse(source, world.Element()->FindElement("gravity"), "must point down, along -z");
-  }
-  return -gravity.Z();
+void read_gravity(const SdfSource& source, const sdf::World& sdf_world, World& world) {
+  const auto gravity = sdf_world.Gravity();
+  if (gravity.Z() > 0.0)
+    refuse(source, sdf_world.Element()->FindElement("gravity"), "points up; it must point down");
+  world.gravity_m_s2 = std::abs(gravity.Z());
+  world.gravity_x_m_s2 = gravity.X();
+  world.gravity_y_m_s2 = gravity.Y();
 }
 
 /// Of several <physics>, the one that SDF takes: the default one, else the first.
@@ -118,7 +130,7 @@ void read_earth_and_air(const SdfSource& source, const sdf::World& sdf_world, Wo
 void read_scene(const sdf::Scene* scene, World& world) {
   if (scene == nullptr) return;
   world.ambient_rgb = to_vec3(scene->Ambient());
-  world.background_rgb = to_vec3(scene->Background());
+  world.background_rgb = scene->Sky() != nullptr ? kSky_rgb : to_vec3(scene->Background());
   if (scene->Shadows()) return;
   for (Light& light : world.lights) light.cast_shadows = false;
 }
@@ -139,7 +151,7 @@ World read_world(const SdfSource& source, const WarningSink& warn) {
 
   World world;
   world.name = sdf_world.Name();
-  world.gravity_m_s2 = read_gravity(source, sdf_world);
+  read_gravity(source, sdf_world, world);
   read_step(source, sdf_world, world);
   read_earth_and_air(source, sdf_world, world);
   for (std::uint64_t i = 0; i < sdf_world.ModelCount(); ++i) {
@@ -162,8 +174,10 @@ LightKind to_light_kind(sdf::LightType type) {
 template <class Read>
 auto read_file(const std::filesystem::path& file, const WorldOptions& options, SdfPurpose purpose,
                const WarningSink& warn, Read read) {
+  WorldOptions own = options;
+  if (purpose == SdfPurpose::kWorld) own.is_tolerant = !options.is_strict;
   return ask_library({file.string()}, [&] {
-    SdfSource source(file, options, warn);
+    SdfSource source(file, own, warn);
     check_elements(source, purpose, warn);
     mend(source, warn);
     source.load();
@@ -171,7 +185,15 @@ auto read_file(const std::filesystem::path& file, const WorldOptions& options, S
   });
 }
 
+/// Rotors only push up: without a weight to carry, they cannot turn the UAV either.
+constexpr double kLeastGravity_m_s2 = 0.1;
+
 void add_uavs(const WorldRequest& request, const WarningSink& warn, World& world) {
+  if (!request.uavs.empty() && world.gravity_m_s2 < kLeastGravity_m_s2)
+    throw Error(ErrorCode::kBadFile, {request.world.string(), 0},
+                "has no gravity, without which a multirotor cannot be controlled; give it a "
+                "<gravity> of at least 0 0 -0.1")
+        .about("<gravity>");
   std::set<std::string> names;
   std::map<std::filesystem::path, Uav> read;  // each file is read once
   for (const UavPlacement& placement : request.uavs) {
@@ -244,6 +266,7 @@ World load_world(const WorldRequest& request, const WarningSink& any_warn) {
         World world = read_world(source, warn);
         world.file = source.file();
         world.sdf_files = source.sdf_files();
+        world.is_strict = request.options.is_strict;
         add_uavs(request, warn, world);
         warn_of_earth(world, warn);
         for (const std::string& name : request.anchors)

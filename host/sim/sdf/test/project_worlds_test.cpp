@@ -173,5 +173,21 @@ TEST(ShippedFiles, AreAllNamedByTheirWorld) {
   EXPECT_THAT(extensions, ::testing::IsSupersetOf({".sdf", ".png", ".obj"}));
 }
 
+// As worlds from others include them.
+TEST(ShippedModels, OfTutorialsAreUsable) {
+  const ScratchFolder folder;
+  std::string includes;
+  for (const char* name : {"sun", "ground_plane", "asphalt_plane", "grass_plane", "cardboard_box",
+                           "wood_cube_10cm", "brick_box_3x1x3", "construction_barrel"})
+    includes += "<include><uri>model://" + std::string(name) + "</uri></include>";
+  WorldRequest request{folder.write("w.sdf", world_sdf(includes)), {}, {}};
+  request.options.model_folders = {kProject / "data/models"};
+  const Loaded loaded = load(request);
+  EXPECT_THAT(loaded.warnings, IsEmpty());
+  EXPECT_EQ(loaded.world.models.size(), 7u);
+  ASSERT_EQ(loaded.world.lights.size(), 1u);
+  EXPECT_TRUE(loaded.world.lights[0].cast_shadows);
+}
+
 }  // namespace
 }  // namespace tether::sim

@@ -53,8 +53,9 @@ inline Loaded load_content(const std::string& content) {
   return load({folder.write("w.sdf", world_sdf(content)), {}, {}});
 }
 
-/// The error with which `load_world` refuses.
-inline Error refusal(const WorldRequest& request) {
+/// The error with which `load_world` refuses, read strictly.
+inline Error refusal(WorldRequest request) {
+  request.options.is_strict = true;
   return bad_file_error([&] { load_world(request, nullptr); });
 }
 

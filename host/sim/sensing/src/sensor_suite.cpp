@@ -52,7 +52,7 @@ uav::Sample SensorSuite::measure(const Snapshot& snapshot, std::size_t uav, std:
   return std::visit(
       Visitor{[&](const ImuModel& imu) -> uav::Sample {
                 return measure_imu(imu, mounted.X_BS, layout_.pose_of(snapshot.state, uav),
-                                   layout_.motion_of(snapshot.state, uav), world_.gravity_m_s2,
+                                   layout_.motion_of(snapshot.state, uav), felt_at_rest(world_),
                                    key);
               },
               [&](const RangeModel& range) -> uav::Sample {

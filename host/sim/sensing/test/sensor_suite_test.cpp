@@ -74,7 +74,7 @@ TEST_F(SensorSuiteTest, AnImuMeasuresItsCarriersMotion) {
   const auto sample = measure<uav::ImuSample>(1, kImu, 4);
   const auto expected =
       measure_imu(std::get<ImuModel>(world_.uavs[1].sensors[kImu].model), X_BS(), kPoses[1],
-                  kMotions[1], world_.gravity_m_s2, {9, "beta", "imu", 4, kAt});
+                  kMotions[1], felt_at_rest(world_), {9, "beta", "imu", 4, kAt});
   EXPECT_EQ(sample.sampled_at, kAt);
   EXPECT_EQ(sample.index, 4U);
   EXPECT_EQ(sample.angular_velocity_rad_s, expected.angular_velocity_rad_s);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <tuple>
 
@@ -8,11 +9,13 @@
 
 namespace tether::sim {
 
-/// What distinguishes two uses of meshes: file, submesh, scale, and whether it is centered.
-using MeshKey = std::tuple<std::filesystem::path, std::string, double, double, double, bool>;
+/// What distinguishes two uses of meshes: file, submesh, scale, whether it is centered, and piece.
+using MeshKey = std::tuple<std::filesystem::path, std::string, double, double, double, bool,
+                           std::optional<std::size_t>>;
 
 inline MeshKey key_of(const MeshGeometry& mesh) {
-  return {mesh.file, mesh.submesh, mesh.scale.x, mesh.scale.y, mesh.scale.z, mesh.is_centered};
+  return {mesh.file,    mesh.submesh,     mesh.scale.x, mesh.scale.y,
+          mesh.scale.z, mesh.is_centered, mesh.piece};
 }
 
 }  // namespace tether::sim

@@ -47,11 +47,14 @@ struct PlaneGeometry {
   double size_y_m = 0.0;
 };
 struct MeshGeometry {
-  std::filesystem::path file;  ///< absolute, exists: .obj, .stl or .dae
+  std::filesystem::path file;  ///< absolute, exists: .obj, .stl, .dae, .glb or .gltf
   std::string submesh;         ///< empty: all
   uav::Vec3 scale{1.0, 1.0, 1.0};
   bool is_centered = false;  ///< moved so that the middle of its extent is the origin
   FileLocation named_at{};   ///< where the world names the file; empty: in no file
+  /// What else it is made of: libraries of materials, pictures and buffers that it names. Absolute.
+  std::vector<std::filesystem::path> companions{};
+  std::optional<std::size_t> piece{};  ///< only this one of its connected pieces; none: all
 };
 using Geometry = std::variant<BoxGeometry, CylinderGeometry, SphereGeometry, CapsuleGeometry,
                               EllipsoidGeometry, PlaneGeometry, MeshGeometry>;
@@ -64,6 +67,12 @@ struct Visitor : Lambdas... {
 template <class... Lambdas>
 Visitor(Lambdas...) -> Visitor<Lambdas...>;
 
+/// What the repetitions of a texture are counted over.
+enum class TextureRepeat {
+  kPerMetre,  ///< a metre of surface; the texture coordinates of a mesh are kept
+  kPerFace,   ///< each face of a box or a plane, each other surface, and the coordinates of a mesh
+};
+
 /// The material of a surface. A texture is multiplied by the colours. On a flat face it begins in
 /// the upper left corner, seen from outside.
 struct Material {
@@ -73,9 +82,12 @@ struct Material {
   uav::Vec3 emissive_rgb;
   double alpha = 1.0;
   std::filesystem::path albedo_map;  ///< PNG or JPEG; empty: none
-  double texture_repeat_x = 1.0;     ///< repetitions per metre of surface (<tether:texture_repeat>)
+  double texture_repeat_x = 1.0;
   double texture_repeat_y = 1.0;
   FileLocation albedo_map_at{};  ///< where the world names the texture; empty: in no file
+  TextureRepeat texture_repeat = TextureRepeat::kPerMetre;  ///< SDF's default: kPerFace
+  bool is_double_sided = false;                             ///< also seen from inside
+  bool is_of_script = false;  ///< of a <script>, which Gazebo 11 reads itself
 };
 
 struct Visual {
@@ -84,6 +96,9 @@ struct Visual {
   Geometry geometry;
   Material material;
   bool cast_shadows = true;
+  /// Looks as the file of its mesh says, times the `alpha`, `diffuse_rgb` and `ambient_rgb` of
+  /// `material`.
+  bool has_look_of_mesh = false;
 };
 
 struct Collision {
@@ -267,8 +282,9 @@ struct Place {
 
 struct World {
   std::string name;
-  std::filesystem::path file;  ///< its own SDF file, absolute; empty: none
-  double gravity_m_s2 = 9.81;  ///< along −z of W
+  std::filesystem::path file;                         ///< its own SDF file, absolute; empty: none
+  double gravity_m_s2 = 9.81;                         ///< along −z of W; not negative
+  double gravity_x_m_s2 = 0.0, gravity_y_m_s2 = 0.0;  ///< of a tilted one, along x and y
   Duration step = std::chrono::milliseconds(1);
   std::string step_from = "default";  ///< who sets the step: "default", "world" or "scenario"
   FileLocation step_at{};             ///< where; empty: nobody does
@@ -285,7 +301,13 @@ struct World {
       files;  ///< all files that it was read from: SDF, meshes, textures; absolute
   /// Of these, `file` and the SDF files that it includes: not those of the UAVs.
   std::set<std::filesystem::path> sdf_files;
+  bool is_strict = false;  ///< as WorldOptions: of meshes and textures that cannot be read
 };
+
+/// What a body at rest measures [m/s²], in W: gravity, pointing the other way.
+inline uav::Vec3 felt_at_rest(const World& world) {
+  return {-world.gravity_x_m_s2, -world.gravity_y_m_s2, world.gravity_m_s2};
+}
 
 /// A UAV and its start pose.
 struct UavPlacement {
@@ -297,12 +319,13 @@ struct UavPlacement {
 
 /// How strictly files are read, and where models are searched for besides the usual places.
 struct WorldOptions {
-  std::vector<std::filesystem::path> model_folders{};  ///< for model://, before the environment's
-  /// Mend impossible inertias, and warn of each; otherwise they are errors.
+  std::vector<std::filesystem::path> model_folders{};  ///< for model://, after the environment's
+  /// What of a world cannot be used is an error; otherwise it is left out or mended, with a warning
+  /// each: models, meshes and textures that are not found, what is too far away or too large,
+  /// shapes with bad values, names that occur twice, impossible inertias, gravity that points up.
+  bool is_strict = false;
+  /// The same for UAVs: whether what cannot be used is left out or mended.
   bool is_tolerant = false;
-  /// Put an empty model in place of an included one that is not found, and leave out visuals,
-  /// collisions and textures whose file is not found. Warns of each; otherwise they are errors.
-  bool replaces_missing_models = false;
 
   friend bool operator==(const WorldOptions&, const WorldOptions&) = default;
 };

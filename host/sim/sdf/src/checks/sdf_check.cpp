@@ -32,7 +32,7 @@ const ElementTable kElements = {
      {"surface_model", "world_frame_orientation", "latitude_deg", "longitude_deg", "elevation",
       "heading_deg"}},
     {"physics", {"max_step_size"}},
-    {"scene", {"ambient", "background", "shadows"}},
+    {"scene", {"ambient", "background", "shadows", "sky"}},
     {"model", {"static", "link", "pose", "frame", "model"}},
     {"frame", {"pose"}},
     {"link", {"pose", "inertial", "visual", "collision"}},
@@ -52,7 +52,10 @@ const ElementTable kElements = {
     {"plane", {"normal", "size"}},
     {"mesh", {"uri", "scale", "submesh"}},
     {"submesh", {"name", "center"}},
-    {"material", {"ambient", "diffuse", "specular", "emissive", "pbr", "tether:texture_repeat"}},
+    {"material",
+     {"ambient", "diffuse", "specular", "emissive", "pbr", "script", "double_sided",
+      "tether:texture_repeat"}},
+    {"script", {"uri", "name"}},
     {"pbr", {"metal", "specular"}},
     {"metal", {"albedo_map"}},
     {"specular", {"albedo_map"}},
@@ -116,6 +119,19 @@ const ElementTable kWithoutEffect = {
     {"depth_camera", {"output"}},
 };
 
+/// What of a material cannot be drawn. A world has hundreds of them: the first one is named.
+const Names kFinePoints = {"normal_map", "roughness_map",  "metalness_map",
+                           "roughness",  "metalness",      "environment_map",
+                           "light_map",  "emissive_map",   "ambient_occlusion_map",
+                           "glossiness", "glossiness_map", "specular_map",
+                           "shader",     "lighting",       "render_order"};
+
+/// What a world can go without, if it is not usable.
+const Names kDispensable = {"visual", "collision", "light", "material"};
+
+/// What of these is represented is not told by their children.
+const Names kLeaves = {"tether:multirotor", "joint", "plugin", "sky"};
+
 /// Sensor types that Tether represents.
 const Names kSensorTypes = {"camera",
                             "depth",
@@ -174,6 +190,18 @@ void check_value(const SdfSource& source, const sdf::ElementPtr& element) {
   const auto numbers = parse_numbers(text);
   if (!numbers) refuse(source, element, "is '" + text + "'; it must be numbers, without unit");
   check_numbers_of(source, element, *numbers, text);
+}
+
+/// A model that fell for ever when its world was saved, for example.
+bool is_far_away(const sdf::ElementPtr& model) {
+  const sdf::ElementPtr pose = model->FindElement("pose");
+  if (!pose || !pose->GetValue()) return false;
+  const auto numbers = parse_numbers(pose->GetValue()->GetAsString());
+  const ValueRule* rule = find_rule("model", "pose");
+  if (!numbers || rule == nullptr) return false;
+  for (std::size_t i = 0; i < std::min(numbers->size(), rule->count); ++i)
+    if (!std::isfinite((*numbers)[i]) || !rule->holds((*numbers)[i])) return true;
+  return false;
 }
 
 /// Lights reach as far as their attenuation lets them; from this range on, no scene shows the end.
@@ -250,7 +278,7 @@ class Walk {
   void visit_children(const sdf::ElementPtr& element) const {
     std::vector<sdf::ElementPtr> unrepresented;
     for_each_child(element, [&](const sdf::ElementPtr& child) {
-      if (child->GetExplicitlySetInFile() && !visit(element->GetName(), child))
+      if (child->GetExplicitlySetInFile() && !visit_if_usable(element->GetName(), child))
         unrepresented.push_back(child);
     });
     // Only now: the place of an element depends on those before it.
@@ -258,6 +286,22 @@ class Walk {
   }
 
  private:
+  /// The same. Without --strict, a world goes without what it can do without.
+  bool visit_if_usable(const std::string& parent, const sdf::ElementPtr& element) const {
+    const bool may_go = source_.options().is_tolerant && purpose_ == SdfPurpose::kWorld &&
+                        (kDispensable.contains(element->GetName()) ||
+                         (element->GetName() == "model" && is_far_away(element)));
+    if (!may_go) return visit(parent, element);
+    try {
+      if (element->GetName() == "model") check_value(source_, element->FindElement("pose"));
+      return visit(parent, element);
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::kBadFile) throw;
+      warn_at(source_, element, Consequence::kMissing, left_out_because(error), warn_);
+      return false;
+    }
+  }
+
   /// @return whether it is to stay. libsdformat would check it further, for nothing; but a pose may
   /// be relative to a joint.
   bool visit(const std::string& parent, const sdf::ElementPtr& element) const {
@@ -267,8 +311,10 @@ class Walk {
     check_light_shape(source_, parent, element, warn_);
     check_distortion_center(source_, parent, element, warn_);
     // These two are read, and warned of, where a UAV is put together.
-    if (name != "tether:multirotor" && name != "joint" && name != "plugin") visit_children(element);
-    return true;
+    if (!kLeaves.contains(name)) visit_children(element);
+    // Of what it consisted, nothing may be left.
+    return name != "model" || parent == "sdf" || element->HasElement("link") ||
+           element->HasElement("model");
   }
 
   /// Warns of an element that is not and should be.
@@ -282,6 +328,19 @@ class Walk {
       warn_of_ignored(source_, element, warn_);
       return true;
     }
+    if (kFinePoints.contains(name) &&
+        (parent == "material" || parent == "metal" || parent == "specular")) {
+      if (!said_fine_points_)
+        warn_at(source_, element, Consequence::kLooksDifferent,
+                "is not represented, nor is any other fine point of materials (maps of normals, "
+                "roughness and the like); ignored",
+                warn_);
+      said_fine_points_ = true;
+      return false;
+    }
+    if (name == "sky")
+      warn_at(source_, element, Consequence::kLooksDifferent,
+              "is drawn as one colour, without sun and clouds", warn_);
     if (!is_known(purpose_, parent, name)) {
       warn_at(source_, element, effect_without(element, purpose_), unrepresented(parent, element),
               warn_);
@@ -324,6 +383,7 @@ class Walk {
   const SdfSource& source_;
   SdfPurpose purpose_;
   const WarningSink& warn_;
+  mutable bool said_fine_points_ = false;
 };
 
 /// Gazebo Sim names the class of the plugin; of Gazebo 11's, only the file is known.
@@ -347,6 +407,14 @@ std::string in_model(const sdf::ElementPtr& element) {
 }
 
 }  // namespace
+
+std::string left_out_because(const Error& error) {
+  std::string reason = error.what();
+  const FileLocation& where = error.where();  // that of the warning, or near it
+  const std::string place = where.file + ":" + std::to_string(where.line) + ": ";
+  if (reason.starts_with(place)) reason.erase(0, place.size());
+  return "cannot be used and is left out: " + reason;
+}
 
 bool is_battery_plugin(const sdf::ElementPtr& element) {
   return is_plugin_of(element, "LinearBatteryPlugin", "LinearBatteryPlugin");

@@ -20,6 +20,9 @@ bool is_odometry_plugin(const sdf::ElementPtr& element);
 /// Warns about an element: its place, and `describe(element)` as the subject.
 void warn_at(const SdfSource& source, const sdf::ElementPtr& element, const Effect& effect,
              const std::string& message, const WarningSink& warn);
+/// The message of a warning about what a world goes without.
+std::string left_out_because(const Error& error);
+
 /// Refuses an element. The error has the element's place, `describe(element)` as its subject, and
 /// a message with the model of the element.
 [[noreturn]] void refuse(const SdfSource& source, const sdf::ElementPtr& element,

@@ -23,10 +23,9 @@ const Effects kEffectOfElement = {
     {"actor", Consequence::kMissing},
     {"population", Consequence::kMissing},
     {"road", Consequence::kMissing},
-    // Both hide what is behind them, and a script is the colour of a surface.
+    // Both hide what is behind them.
     {"fog", can_change(Consequence::kLooksDifferent)},
     {"particle_emitter", can_change(Consequence::kLooksDifferent)},
-    {"script", can_change(Consequence::kLooksDifferent)},
     {"projector", Consequence::kLooksDifferent},
     {"laser_retro", Consequence::kNoEffect},
     {"enable_wind", Consequence::kBehavesDifferent},

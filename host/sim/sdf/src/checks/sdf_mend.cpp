@@ -31,8 +31,8 @@ void rename_duplicates(const SdfSource& source, const sdf::ElementPtr& parent,
   for (const char* kind : kinds) {
     for_each_child(parent, [&](const sdf::ElementPtr& child) {
       if (child->GetName() != kind || name_attribute(child).empty()) return;
-      if (!names.insert(name_attribute(child)).second && source.is_included(child))
-        duplicates.push_back(child);
+      const bool may_rename = source.options().is_tolerant || source.is_included(child);
+      if (!names.insert(name_attribute(child)).second && may_rename) duplicates.push_back(child);
     });
   }
   for (const sdf::ElementPtr& duplicate : duplicates) {
@@ -98,7 +98,8 @@ void mend_inertia(const SdfSource& source, const sdf::ElementPtr& inertial,
     refuse(source, inertia,
            "has moments that no body can have (ixx, iyy, izz: " + three_numbers(moments) +
                " kg m^2): all must be positive, and none larger than the sum of the other two. "
-               "Correct them, or let --tolerant correct them");
+               "Correct them, or let Tether do it (for UAVs: --tolerant, for worlds: without "
+               "--strict)");
   }
   // A little more, because of rounding.
   const double added = missing_moment(matrix) * (1.0 + 1e-6);

@@ -3,6 +3,7 @@
 #include "checks/sdf_check.h"
 #include "files/sdf_source.h"
 
+#include <initializer_list>
 #include <string>
 
 #include <ignition/math/Color.hh>
@@ -34,6 +35,16 @@ uav::Pose resolved_pose(const SdfSource& source, const SdfObject& object) {
   }
   return to_pose(pose);
 }
+
+/// The element that a path of names leads to; nullptr if there is none.
+sdf::ElementPtr find_path(sdf::ElementPtr element, std::initializer_list<const char*> names);
+/// ".dae" of "a.DAE".
+std::string extension_of(const std::filesystem::path& file);
+
+/// The material of a visual, whose geometry `out` has: of its <material>, of a material script that
+/// this names, else of the file of its mesh.
+void read_look(const SdfSource& source, const sdf::Visual& visual, const WarningSink& warn,
+               Visual& out);
 
 /// One link, with its visuals and collisions.
 Link read_link(const SdfSource& source, const sdf::Link& link, const WarningSink& warn);

@@ -1,30 +1,16 @@
 #include "convert/sdf_convert.h"
 
+#include <algorithm>
+#include <array>
 #include <cctype>
-#include <initializer_list>
 #include <optional>
-
-#include <tether/os/text_file.h>
+#include <string_view>
 
 namespace tether::sim {
 
 using uav::Vec3;
 
 namespace {
-
-sdf::ElementPtr find_path(sdf::ElementPtr element, std::initializer_list<const char*> names) {
-  for (const char* name : names) {
-    if (!element) return nullptr;
-    element = element->FindElement(name);
-  }
-  return element;
-}
-
-std::string extension_of(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension;
-}
 
 std::optional<MeshGeometry> read_mesh(const SdfSource& source, const sdf::Mesh& mesh,
                                       const WarningSink& warn) {
@@ -39,9 +25,12 @@ std::optional<MeshGeometry> read_mesh(const SdfSource& source, const sdf::Mesh& 
     return std::nullopt;
   }
   const std::string extension = extension_of(geometry.file);
-  if (extension != ".obj" && extension != ".stl" && extension != ".dae") {
-    refuse(source, uri, "names '" + mesh.Uri() + "'; meshes are .obj, .stl or .dae files");
+  constexpr std::array<std::string_view, 5> kTypes = {".obj", ".stl", ".dae", ".glb", ".gltf"};
+  if (std::ranges::find(kTypes, extension) == kTypes.end()) {
+    refuse(source, uri,
+           "names '" + mesh.Uri() + "'; meshes are .obj, .stl, .dae, .glb or .gltf files");
   }
+  geometry.companions = source.companions_of(geometry.file);
   return geometry;
 }
 
@@ -64,74 +53,16 @@ std::optional<Geometry> read_geometry(const SdfSource& source, const sdf::Geomet
   return std::nullopt;
 }
 
-void read_albedo_map(const SdfSource& source, const sdf::ElementPtr& element,
-                     const WarningSink& warn, Material& material) {
-  sdf::ElementPtr map = find_path(element, {"pbr", "metal", "albedo_map"});
-  if (!map) map = find_path(element, {"pbr", "specular", "albedo_map"});
-  if (!map || map->Get<std::string>().empty()) return;
-  const std::filesystem::path file = source.find_resource(map, map->Get<std::string>());
-  const std::string extension = extension_of(file);
-  if (extension == ".png" || extension == ".jpg" || extension == ".jpeg") {
-    material.albedo_map = file;
-    material.albedo_map_at = source.where(map);
-    return;
+/// Calls `read`. Without --strict, what cannot be used is left out of a world.
+template <class Read>
+void read_or_leave_out(const SdfSource& source, const sdf::ElementPtr& element,
+                       const WarningSink& warn, const Read& read) {
+  try {
+    read();
+  } catch (const Error& error) {
+    if (!source.options().is_tolerant || error.code() != ErrorCode::kBadFile) throw;
+    warn_at(source, element, Consequence::kMissing, left_out_because(error), warn);
   }
-  warn_at(source, map, Effect(Consequence::kLooksDifferent, true),
-          "names '" + map->Get<std::string>() +
-              (file.empty() ? "', which is not found; the colours are used"
-                            : "', which is neither a PNG nor a JPEG file; the colours are used"),
-          warn);
-}
-
-/// A colour that the file gives, or `otherwise`.
-Vec3 color_or(const sdf::Material& material, const char* name, const ignition::math::Color& color,
-              const Vec3& otherwise) {
-  return material.Element()->HasElement(name) ? to_vec3(color) : otherwise;
-}
-
-void read_texture(const SdfSource& source, const sdf::ElementPtr& element, const WarningSink& warn,
-                  Material& material) {
-  read_albedo_map(source, element, warn, material);
-  const sdf::ElementPtr repeat = find_path(element, {"tether:texture_repeat"});
-  if (!repeat) return;
-  const std::vector<double> numbers = read_numbers(source, repeat, 2);
-  if (numbers[0] <= 0.0 || numbers[1] <= 0.0) {
-    refuse(source, repeat, "must be two numbers greater than 0: repetitions per metre");
-  }
-  material.texture_repeat_x = numbers[0];
-  material.texture_repeat_y = numbers[1];
-}
-
-/// Without a <material>, a visual has the colours and pictures of its mesh's file, if that has any.
-void warn_of_lost_colors(const SdfSource& source, const sdf::Visual& visual,
-                         const Geometry& geometry, const WarningSink& warn) {
-  const auto* mesh = std::get_if<MeshGeometry>(&geometry);
-  if (mesh == nullptr || visual.Material() != nullptr) return;
-  const std::string extension = extension_of(mesh->file);
-  const char* mark = extension == ".obj" ? "usemtl" : extension == ".dae" ? "<effect" : nullptr;
-  if (mark == nullptr || os::read_file(mesh->file).find(mark) == std::string::npos) return;
-  warn_at(source, visual.Element(), Effect(Consequence::kLooksDifferent, true),
-          "is grey: the materials of the file of its mesh are not used. Give it a <material>",
-          warn);
-}
-
-/// Colours not given: a texture shows as it is, an untextured surface is grey; ambient is diffuse.
-Material read_material(const SdfSource& source, const sdf::Visual& visual,
-                       const WarningSink& warn) {
-  Material material;
-  const sdf::Material* given = visual.Material();
-  double opacity = 1.0;
-  if (given != nullptr) {
-    read_texture(source, given->Element(), warn, material);
-    const Vec3 plain = material.albedo_map.empty() ? material.diffuse_rgb : Vec3{1.0, 1.0, 1.0};
-    material.diffuse_rgb = color_or(*given, "diffuse", given->Diffuse(), plain);
-    material.ambient_rgb = color_or(*given, "ambient", given->Ambient(), material.diffuse_rgb);
-    material.specular_rgb = color_or(*given, "specular", given->Specular(), {});
-    material.emissive_rgb = color_or(*given, "emissive", given->Emissive(), {});
-    if (given->Element()->HasElement("diffuse")) opacity = double{given->Diffuse().A()};
-  }
-  material.alpha = opacity * (1.0 - double{visual.Transparency()});
-  return material;
 }
 
 double read_friction(const sdf::Collision& collision) {
@@ -151,6 +82,20 @@ void read_inertial(const ignition::math::Inertiald& inertial, Link& link) {
 }
 
 }  // namespace
+
+sdf::ElementPtr find_path(sdf::ElementPtr element, std::initializer_list<const char*> names) {
+  for (const char* name : names) {
+    if (!element) return nullptr;
+    element = element->FindElement(name);
+  }
+  return element;
+}
+
+std::string extension_of(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension;
+}
 
 Vec3 to_vec3(const ignition::math::Vector3d& v) {
   return {v.X(), v.Y(), v.Z()};
@@ -172,18 +117,26 @@ Link read_link(const SdfSource& source, const sdf::Link& link, const WarningSink
   read_inertial(link.Inertial(), result);
   for (std::uint64_t i = 0; i < link.VisualCount(); ++i) {
     const sdf::Visual& visual = *link.VisualByIndex(i);
-    const auto geometry = read_geometry(source, *visual.Geom(), warn);
-    if (!geometry) continue;
-    warn_of_lost_colors(source, visual, *geometry, warn);
-    result.visuals.push_back({visual.Name(), resolved_pose(source, visual), *geometry,
-                              read_material(source, visual, warn), visual.CastShadows()});
+    read_or_leave_out(source, visual.Element(), warn, [&] {
+      const auto geometry = read_geometry(source, *visual.Geom(), warn);
+      if (!geometry) return;
+      Visual out;
+      out.name = visual.Name();
+      out.X_LV = resolved_pose(source, visual);
+      out.geometry = *geometry;
+      out.cast_shadows = visual.CastShadows();
+      read_look(source, visual, warn, out);
+      result.visuals.push_back(std::move(out));
+    });
   }
   for (std::uint64_t i = 0; i < link.CollisionCount(); ++i) {
     const sdf::Collision& collision = *link.CollisionByIndex(i);
-    const auto geometry = read_geometry(source, *collision.Geom(), warn);
-    if (!geometry) continue;
-    result.collisions.push_back(
-        {collision.Name(), resolved_pose(source, collision), *geometry, read_friction(collision)});
+    read_or_leave_out(source, collision.Element(), warn, [&] {
+      const auto geometry = read_geometry(source, *collision.Geom(), warn);
+      if (geometry)
+        result.collisions.push_back({collision.Name(), resolved_pose(source, collision), *geometry,
+                                     read_friction(collision)});
+    });
   }
   return result;
 }

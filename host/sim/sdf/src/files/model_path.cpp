@@ -23,6 +23,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
+constexpr const char* kWithout =
+    ". To fly without it, leave out --strict (in a UAV's model: use --tolerant)";
+
 std::string variable(const char* name) {
   const char* value = std::getenv(name);
   return value != nullptr ? value : "";
@@ -168,12 +171,13 @@ std::string nearest_in(const fs::path& folder, const fs::path& path) {
 
 }  // namespace
 
-ModelPath::ModelPath(const fs::path& world, std::vector<fs::path> model_folders)
-    : world_(world), model_folders_(std::move(model_folders)) {
+ModelPath::ModelPath(const fs::path& world, const std::vector<fs::path>& model_folders)
+    : world_(world) {
   for (const char* name :
        {"GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH", "GAZEBO_MODEL_PATH", "SDF_PATH"}) {
     for (std::string& folder : split(variable(name), ':')) model_folders_.emplace_back(folder);
   }
+  model_folders_.insert(model_folders_.end(), model_folders.begin(), model_folders.end());
   for (const char* name : {"GZ_FUEL_CACHE_PATH", "IGN_FUEL_CACHE_PATH"})
     if (const std::string cache = variable(name); !cache.empty()) fuel_caches_.emplace_back(cache);
   if (const fs::path home = variable("HOME"); !home.empty()) {
@@ -191,12 +195,25 @@ std::optional<fs::path> ModelPath::find(const std::string& uri, const fs::path& 
   if (path.empty()) path = after_scheme(uri, "package://");
   if (path.empty()) {
     const std::string file = uri.starts_with("file://") ? uri.substr(7) : uri;
-    return first_existing({from.parent_path(), world_.parent_path()}, file);
+    const auto found = first_existing(folders_of_files(from), file);
+    if (found || uri.find('/') != std::string::npos) return found;
+    path = uri;
   }
   if (const auto found = first_existing(folders_of_models(from), path)) return found;
   const std::size_t slash = std::min(path.find('/'), path.size());
   return find_in_caches(fuel_caches_, {"", path.substr(0, slash), 0,
                                        fs::path(path.substr(std::min(slash + 1, path.size())))});
+}
+
+/// Gazebo's resource path often has the folder above the models: "file://models/NAME/…".
+std::vector<fs::path> ModelPath::folders_of_files(const fs::path& from) const {
+  const fs::path world = world_.parent_path();
+  std::vector<fs::path> folders{from.parent_path(), world, world.parent_path()};
+  for (const fs::path& models : model_folders_) {
+    folders.push_back(models);
+    folders.push_back((models / "").parent_path().parent_path());
+  }
+  return folders;
 }
 
 std::vector<fs::path> ModelPath::folders_of_models(const fs::path& from) const {
@@ -210,23 +227,22 @@ std::vector<fs::path> ModelPath::folders_of_models(const fs::path& from) const {
 std::string ModelPath::advice_on_missing(const std::string& uri, const fs::path& from) const {
   if (is_on_fuel(uri)) {
     return "Fuel models are not fetched. Download it with `gz fuel download -u \"" +
-           uri.substr(0, uri.find("/files/")) +
-           "\"`, or use --missing-models placeholder to fly without it";
+           uri.substr(0, uri.find("/files/")) + "\"`" + std::string(kWithout);
   }
   const std::size_t scheme = uri.find("://");
   if (scheme == std::string::npos) {
     const std::string name = similar(from.parent_path() / uri);
     return (name.empty() ? "Correct the path" : "Did you mean '" + name + "'? Correct the path") +
-           ", or use --missing-models placeholder to fly without it";
+           kWithout;
   }
   const fs::path path = uri.substr(scheme + 3);
   for (const fs::path& folder : folders_of_models(from))
     if (const std::string meant = nearest_in(folder, path); !meant.empty())
       return "Did you mean '" + uri.substr(0, scheme + 3) + meant + "', in " + folder.string() +
-             "? Or use --missing-models placeholder to fly without it";
+             kWithout;
   return "Put it next to the world or into its models/, add its folder to GZ_SIM_RESOURCE_PATH, "
-         "download it with `gz fuel download`, or use --missing-models placeholder to fly without "
-         "it";
+         "or download it with `gz fuel download`" +
+         std::string(kWithout);
 }
 
 fs::path sdf_file_of(const fs::path& model_folder, const std::string& latest_version) {

@@ -11,14 +11,17 @@ namespace tether::sim {
 class ModelPath {
  public:
   /// @param world the world's or UAV's own file
-  /// @param model_folders searched for model:// after the surroundings of the files
-  ModelPath(const std::filesystem::path& world, std::vector<std::filesystem::path> model_folders);
+  /// @param model_folders searched for model:// after the environment's
+  ModelPath(const std::filesystem::path& world,
+            const std::vector<std::filesystem::path>& model_folders);
 
   /// The file or folder that `uri` means in the file `from`; none if there is nothing.
   ///
-  /// A path is relative to `from`, else to the world. model://NAME is searched for in models/ and
-  /// ../models/ next to these two, beside them, in the model folders, in the folders of
-  /// GZ_SIM_RESOURCE_PATH, IGN_GAZEBO_RESOURCE_PATH, GAZEBO_MODEL_PATH and SDF_PATH, and in Fuel's
+  /// A path is relative to `from`, else to the world, the folder above it, the environment's
+  /// folders and the folders above these; one name alone is also that of a model. model://NAME is
+  /// searched for in models/ and
+  /// ../models/ next to these two, beside them, in the folders of GZ_SIM_RESOURCE_PATH,
+  /// IGN_GAZEBO_RESOURCE_PATH, GAZEBO_MODEL_PATH and SDF_PATH, in the model folders, and in Fuel's
   /// caches (GZ_FUEL_CACHE_PATH, IGN_FUEL_CACHE_PATH, ~/.gz/fuel, ~/.ignition/fuel), which are the
   /// only place for https://HOST/1.0/OWNER/models/NAME[/VERSION[/files/FILE]]. Without VERSION, the
   /// highest one in the cache is meant.
@@ -30,6 +33,7 @@ class ModelPath {
   std::string advice_on_missing(const std::string& uri, const std::filesystem::path& from) const;
 
  private:
+  std::vector<std::filesystem::path> folders_of_files(const std::filesystem::path& from) const;
   std::vector<std::filesystem::path> folders_of_models(const std::filesystem::path& from) const;
 
   std::filesystem::path world_;

@@ -52,6 +52,8 @@ const ValueRule kNearPlane{[](double v) { return v >= 1e-4 && v <= kMaxLength_m;
                            "it must be at least 0.0001 and at most 100000 m", "metres"};
 const ValueRule kDistance{[](double v) { return v >= 0.0 && v <= kMaxLength_m; },
                           "it must be at least 0 and at most 100000 m", "metres"};
+const ValueRule kGround{[](double v) { return v > 0.0 && v <= 10.0 * kMaxLength_m; },
+                        "it must be greater than 0 and at most 1000000 m", "metres"};
 const ValueRule kScale{is_length, "it must be greater than 0 and at most 100000"};
 const ValueRule kMass{[](double v) { return v > 0.0 && v <= kMaxMass_kg; },
                       "it must be greater than 0 and at most 1000000 kg", "kilograms"};
@@ -79,7 +81,7 @@ const std::map<std::string, ValueRule, std::less<>> kRules = {
     {"capsule/radius", kLength},
     {"capsule/length", kLength},
     {"ellipsoid/radii", kLength},
-    {"plane/size", kLength},
+    {"plane/size", kGround},
     {"mesh/scale", kScale},
     {"ode/mu", kNotNegative},
     {"visual/transparency", kFraction},

@@ -5,6 +5,7 @@
 #include "files/sdf_source.h"
 
 #include "files/file_kind.h"
+#include "files/mesh_companions.h"
 #include "files/sdf_numbers.h"
 #include "files/sdf_rules.h"
 
@@ -18,6 +19,8 @@
 
 #include <console_bridge/console.h>
 #include <tinyxml2.h>
+
+#include <tether/os/text_file.h>
 
 namespace tether::sim {
 
@@ -56,6 +59,12 @@ class QuietConsole {
 /// Longer messages of libsdformat, which may quote a whole file, are cut: std::regex needs stack
 /// for every character.
 constexpr std::size_t kLongestMessage = 2000;
+constexpr std::uintmax_t kLargestResource = std::uintmax_t{1} << 24;
+
+const std::regex& unread() {
+  static const std::regex message("Error reading element <(\\S+)>");
+  return message;
+}
 
 /// One line, without trailing full stop.
 std::string one_line(const std::string& text) {
@@ -105,18 +114,6 @@ const tinyxml2::XMLElement* nth_child(const tinyxml2::XMLElement* parent, const 
   const tinyxml2::XMLElement* child = parent->FirstChildElement(name.c_str());
   for (; child != nullptr && n > 0; --n) child = child->NextSiblingElement(name.c_str());
   return child;
-}
-
-/// The last element of that name on the line: errors are of the innermost one.
-const tinyxml2::XMLElement* element_at(const tinyxml2::XMLElement& element, const std::string& name,
-                                       int line) {
-  const tinyxml2::XMLElement* found =
-      element.Name() == name && element.GetLineNum() == line ? &element : nullptr;
-  for (const auto* child = element.FirstChildElement(); child != nullptr;
-       child = child->NextSiblingElement()) {
-    if (const auto* inner = element_at(*child, name, line)) found = inner;
-  }
-  return found;
 }
 
 /// The line of the first element with "::" in its name, which libsdformat's converters take apart;
@@ -214,11 +211,15 @@ void SdfSource::read(const WarningSink& warn) {
   config.SetUnrecognizedElementsPolicy(sdf::EnforcementPolicy::LOG);
   for (const SdfStage::File& staged : stage_.files()) {
     sdf::Errors errors;
-    parsed_ = empty_sdf();
-    const auto* root = stage_.root_of(staged.original);
-    const bool is_read =
-        ask_library({staged.original.string(), root != nullptr ? line_of_nested_name(*root) : 0},
-                    [&] { return sdf::readFile(staged.copy, config, parsed_, errors); });
+    bool is_read = false;
+    do {
+      errors.clear();
+      parsed_ = empty_sdf();
+      const auto* root = stage_.root_of(staged.original);
+      is_read =
+          ask_library({staged.original.string(), root != nullptr ? line_of_nested_name(*root) : 0},
+                      [&] { return sdf::readFile(staged.copy, config, parsed_, errors); });
+    } while (leave_out_unreadable(staged, errors, warn));
     for (const sdf::Error& error : errors) {
       if (warn && is_warning(error)) warn(warning_of(error));
     }
@@ -229,6 +230,25 @@ void SdfSource::read(const WarningSink& warn) {
       throw Error(ErrorCode::kBadFile, {staged.original.string(), 0}, "not an SDF file");
     }
   }
+}
+
+/// Without --strict, a world goes without what has a value that SDF does not allow.
+/// @return whether something was left out
+bool SdfSource::leave_out_unreadable(const SdfStage::File& staged, sdf::Errors errors,
+                                     const WarningSink& warn) {
+  std::erase_if(errors, is_warning);
+  if (!options_.is_tolerant || errors.empty() || !errors.front().LineNumber()) return false;
+  const std::string reason = reason_of(errors.front());
+  std::smatch match;
+  if (!std::regex_search(reason, match, unread())) return false;
+  const int line = *errors.front().LineNumber();
+  const std::string left_out = stage_.leave_out(staged, match[1].str(), line);
+  if (!left_out.empty() && warn)
+    warn({Consequence::kMissing,
+          {staged.original.string(), line},
+          left_out,
+          "cannot be used and is left out: " + reason});
+  return !left_out.empty();
 }
 
 /// Of an attribute that SDF does not know, or of a deprecated element.
@@ -251,25 +271,25 @@ void SdfSource::load() {
   if (!errors.empty()) refuse_by(errors);
 }
 
+/// What is wrong, with the value in question, which libsdformat says on the console only.
+std::string SdfSource::reason_of(const sdf::Error& error) const {
+  const FileLocation at = where(error);
+  std::string reason = one_line(error.Message());
+  std::smatch match;
+  if (!std::regex_match(reason, match, unread()) || !error.LineNumber()) return reason;
+  const auto* root = stage_.root_of(at.file);
+  const auto* xml = root != nullptr ? element_at(*root, match[1].str(), at.line) : nullptr;
+  if (xml == nullptr || xml->GetText() == nullptr) return reason;
+  const std::string text = one_line(xml->GetText());
+  reason += ": '" + text + "' is not a value that SDF allows for it";
+  static const std::regex yes_or_no("yes|no|on|off", std::regex::icase);
+  if (std::regex_match(text, yes_or_no)) reason += ". Write true or false";
+  return reason;
+}
+
 void SdfSource::refuse_by(const sdf::Errors& errors) const {
   require_a_handle_for(file_.string());
-  const sdf::Error& first = errors.front();
-  const FileLocation at = where(first);
-  std::string reason = one_line(first.Message());
-  // Of a value, libsdformat says on the console only what is wrong.
-  static const std::regex unread("Error reading element <(\\S+)>");
-  std::smatch match;
-  if (std::regex_match(reason, match, unread) && first.LineNumber()) {
-    const auto* root = stage_.root_of(at.file);
-    const auto* xml = root != nullptr ? element_at(*root, match[1].str(), at.line) : nullptr;
-    if (xml != nullptr && xml->GetText() != nullptr) {
-      const std::string text = one_line(xml->GetText());
-      reason += ": '" + text + "' is not a value that SDF allows for it";
-      static const std::regex yes_or_no("yes|no|on|off", std::regex::icase);
-      if (std::regex_match(text, yes_or_no)) reason += ". Write true or false";
-    }
-  }
-  throw Error(ErrorCode::kBadFile, at, reason);
+  throw Error(ErrorCode::kBadFile, where(errors.front()), reason_of(errors.front()));
 }
 
 FileLocation SdfSource::where(const sdf::Error& error) const {
@@ -329,15 +349,34 @@ std::set<fs::path> SdfSource::sdf_files() const {
 }
 
 fs::path SdfSource::find_resource(const sdf::ElementPtr& element, const std::string& uri) const {
-  const auto found = path_.find(uri, stage_.original_of(element->FilePath()));
-  if (found && is_file(*found))
-    return *resources_.insert(fs::absolute(*found).lexically_normal()).first;
-  if (options_.replaces_missing_models) return {};
+  const auto found = find(element, uri);
+  if (found && is_file(*found)) return use(*found);
+  if (options_.is_tolerant) return {};
   const std::string subject = describe(element);
   throw Error(ErrorCode::kBadFile, where(element),
               subject + " names the file '" + uri + "', which is not found. " +
                   path_.advice_on_missing(uri, stage_.original_of(element->FilePath())))
       .about(subject);
+}
+
+std::optional<fs::path> SdfSource::find(const sdf::ElementPtr& element,
+                                        const std::string& uri) const {
+  return path_.find(uri, stage_.original_of(element->FilePath()));
+}
+
+fs::path SdfSource::use(const fs::path& file) const {
+  return *resources_.insert(fs::absolute(file).lexically_normal()).first;
+}
+
+std::string SdfSource::read_resource(const fs::path& file) const {
+  return os::read_file(use(file), kLargestResource);
+}
+
+const std::vector<fs::path>& SdfSource::companions_of(const fs::path& mesh) const {
+  const auto [known, is_new] = companions_.try_emplace(mesh);
+  if (is_new) known->second = mesh_companions(mesh);
+  for (const fs::path& file : known->second) use(file);
+  return known->second;
 }
 
 }  // namespace tether::sim

@@ -5,8 +5,11 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
+#include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include <sdf/sdf.hh>
 
@@ -48,6 +51,17 @@ class SdfSource {
   /// allow to go without it. @throws Error(kBadFile) about the element if they do not.
   std::filesystem::path find_resource(const sdf::ElementPtr& element, const std::string& uri) const;
 
+  /// The file or folder that `uri` means at `element`; none if there is nothing.
+  std::optional<std::filesystem::path> find(const sdf::ElementPtr& element,
+                                            const std::string& uri) const;
+  /// The content of a file, which is one that this one was made of from now on.
+  /// @throws Error(kBadFile) if it cannot be read or has more than 16 MiB.
+  std::string read_resource(const std::filesystem::path& file) const;
+  /// The same for a file that is not read here. @return `file`
+  std::filesystem::path use(const std::filesystem::path& file) const;
+  /// What a mesh file names as parts of it (mesh_companions), found once.
+  const std::vector<std::filesystem::path>& companions_of(const std::filesystem::path& mesh) const;
+
   /// Every file that this one was made of so far: itself, what it includes, and the resources
   /// found. Absolute.
   std::set<std::filesystem::path> files() const;
@@ -56,7 +70,10 @@ class SdfSource {
 
  private:
   void read(const WarningSink& warn);
+  bool leave_out_unreadable(const SdfStage::File& staged, sdf::Errors errors,
+                            const WarningSink& warn);
   Warning warning_of(const sdf::Error& error) const;
+  std::string reason_of(const sdf::Error& error) const;
   [[noreturn]] void refuse_by(const sdf::Errors& errors) const;
   FileLocation where(const sdf::Error& error) const;
   int line_in_xml(const sdf::ElementPtr& element) const;
@@ -68,6 +85,7 @@ class SdfSource {
   sdf::SDFPtr parsed_;
   sdf::Root root_;
   mutable std::set<std::filesystem::path> resources_;
+  mutable std::map<std::filesystem::path, std::vector<std::filesystem::path>> companions_;
 };
 
 /// In a handler: turns what libsdformat threw into the refusal of the file. Other errors stay.

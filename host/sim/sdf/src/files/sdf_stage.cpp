@@ -5,10 +5,12 @@
 
 #include "files/file_kind.h"
 #include "files/sdf_numbers.h"
+#include "files/sdf_repair.h"
 #include "files/sdf_version_number.h"
 #include "files/sdf_xml.h"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <fstream>
 #include <optional>
@@ -80,6 +82,59 @@ std::string describe_include(const XMLElement& include) {
   return "<include> of '" + content_of(include.FirstChildElement("uri")) + "'";
 }
 
+/// What follows `prefix` in names that elements refer to.
+std::set<std::string> names_in(const XMLElement& element, const std::string& prefix) {
+  std::set<std::string> names;
+  const auto take = [&](const std::string& name) {
+    if (name.starts_with(prefix)) names.insert(name.substr(prefix.size()));
+  };
+  const std::string_view kind = element.Name();
+  if (kind == "parent" || kind == "child") take(content_of(&element));
+  for (const char* frame : {"relative_to", "attached_to", "expressed_in"})
+    if (const char* value = element.Attribute(frame)) take(value);
+  for (const XMLElement* child = element.FirstChildElement(); child != nullptr;
+       child = child->NextSiblingElement())
+    names.merge(names_in(*child, prefix));
+  names.erase("");
+  names.erase("__model__");
+  return names;
+}
+
+XMLElement& named_child(XMLElement& parent, const char* kind, const std::string& name) {
+  for (XMLElement* child = parent.FirstChildElement(kind); child != nullptr;
+       child = child->NextSiblingElement(kind))
+    if (child->Attribute("name", name.c_str()) != nullptr) return *child;
+  XMLElement& child = *parent.InsertNewChildElement(kind);
+  child.SetAttribute("name", name.c_str());
+  return child;
+}
+
+/// A link "a::b" is link "b" of the nested model "a".
+void add_link(XMLElement& model, const std::string& name) {
+  const std::size_t at = name.find("::");
+  if (at == std::string::npos) {
+    named_child(model, "link", name);
+    return;
+  }
+  add_link(named_child(model, "model", name.substr(0, at)), name.substr(at + 2));
+}
+
+/// What to do about a model's folder that has only the source of its SDF file.
+std::string advice_on_source(const fs::path& folder) {
+  std::set<std::string> sources;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error)) {
+    const std::string type = entry->path().extension();
+    if (type == ".jinja" || type == ".xacro" || type == ".erb" || type == ".rsdf")
+      sources.insert(entry->path().filename());
+  }
+  if (sources.empty()) return "";
+  return "; it is generated from '" + *sources.begin() +
+         "': build the project that the model is from, or expand the file by its tool (jinja2, "
+         "xacro, erb)";
+}
+
 /// What an included model is called if its file is not there to say.
 std::string name_of(const XMLElement& include) {
   if (const std::string name = content_of(include.FirstChildElement("name")); !name.empty())
@@ -87,6 +142,10 @@ std::string name_of(const XMLElement& include) {
   const std::string uri = content_of(include.FirstChildElement("uri"));
   return uri.substr(uri.find_last_of('/', uri.size() - 2) + 1);
 }
+
+/// What a world can go without.
+constexpr std::array<std::string_view, 5> kDispensableParts = {"visual", "collision", "light",
+                                                               "sensor", "joint"};
 
 }  // namespace
 
@@ -106,6 +165,22 @@ const XMLElement* SdfStage::root_of(const std::string& original) const {
   return document != originals_.end() ? document->second->RootElement() : nullptr;
 }
 
+std::string SdfStage::leave_out(const File& file, const std::string& name, int line) {
+  XMLDocument copy;
+  if (copy.LoadFile(file.copy.c_str()) != tinyxml2::XML_SUCCESS) return "";
+  XMLElement* element = element_at(*copy.RootElement(), name, line);
+  if (element == nullptr) return "";
+  for (XMLElement* parent = element; parent; parent = parent->Parent()->ToElement())
+    if (std::ranges::find(kDispensableParts, parent->Name()) != kDispensableParts.end())
+      element = parent;
+  const char* const own = element->Attribute("name");
+  const std::string left_out =
+      own != nullptr ? std::string(element->Name()) + " '" + own + "'" : "<" + name + ">";
+  element->Parent()->DeleteChild(element);
+  write(file.copy, copy);
+  return left_out;
+}
+
 /// Stages the file unless it was. @return its copy
 fs::path SdfStage::stage(const fs::path& file) {
   const auto staged = std::ranges::find(files_, file, &File::original);
@@ -117,6 +192,7 @@ fs::path SdfStage::stage(const fs::path& file) {
   XMLDocument& document = *copied;
   XMLElement& root = *document.RootElement();
   lower_version(file, root);
+  repair(file, root, warn_);
   open_.insert(file);
   resolve_includes(file, root);
   open_.erase(file);
@@ -142,16 +218,12 @@ void SdfStage::lower_version(const fs::path& file, XMLElement& root) {
   root.SetAttribute("version", sdf::SDF::Version().c_str());
 }
 
-/// Those in `element`. A plugin's elements are its own. Gazebo saves poses with an empty frame,
-/// which means none, and on which libsdformat's converter gives up.
+/// Those in `element`. A plugin's elements are its own.
 void SdfStage::resolve_includes(const fs::path& file, XMLElement& element) {
   for (XMLElement *child = element.FirstChildElement(), *next = nullptr; child != nullptr;
        child = next) {
     next = child->NextSiblingElement();
     const std::string_view name = child->Name();
-    if (name == "pose")
-      for (const char* frame : {"frame", "relative_to"})
-        if (child->Attribute(frame, "") != nullptr) child->DeleteAttribute(frame);
     if (name == "include")
       resolve(file, *child);
     else if (name != "plugin" && name.find(':') == std::string_view::npos)
@@ -183,7 +255,7 @@ fs::path SdfStage::find_included(const fs::path& file, const XMLElement& uri) co
   const FileLocation where{file.string(), uri.GetLineNum()};
   const auto found = path_.find(content_of(&uri), file);
   if (!found) {
-    if (options_.replaces_missing_models) return {};
+    if (options_.is_tolerant) return {};
     throw Error(ErrorCode::kBadFile, where,
                 subject + " leads to nothing. " + path_.advice_on_missing(content_of(&uri), file))
         .about(subject);
@@ -191,24 +263,30 @@ fs::path SdfStage::find_included(const fs::path& file, const XMLElement& uri) co
   fs::path sdf = fs::absolute(*found).lexically_normal();
   if (is_folder(sdf)) sdf = sdf_file_of(sdf, sdf::SDF::Version());
   if (!is_file(sdf)) {
+    if (options_.is_tolerant) return {};
     throw Error(ErrorCode::kBadFile, where,
                 subject + " leads to " + found->string() +
-                    ", whose model.config names no SDF file that exists")
+                    ", whose model.config names no SDF file that exists" + advice_on_source(*found))
         .about(subject);
   }
   return sdf.lexically_normal();
 }
 
-/// An empty model of that name and pose, so that other elements can still be relative to it.
+/// An empty model of that name and pose, with the links that other elements name, so that these can
+/// still be relative to it or joined with it.
 void SdfStage::replace(const fs::path& file, XMLElement& include) {
+  const XMLElement& uri = *include.FirstChildElement("uri");
+  const auto found = path_.find(content_of(&uri), file);
   if (warn_)
     warn_({Consequence::kMissing,
-           {file.string(), include.FirstChildElement("uri")->GetLineNum()},
+           {file.string(), uri.GetLineNum()},
            describe_include(include),
-           "is not found; an empty model replaces it"});
+           (found ? "has no SDF file" + advice_on_source(*found) + "; an empty model replaces it"
+                  : "is not found; an empty model replaces it")});
+  std::string name = name_of(include);
+  std::set<std::string> named = names_in(*include.GetDocument()->RootElement(), name + "::");
   const bool has_name = include.FirstChildElement("name") != nullptr;
-  const std::string name =
-      name_of(include) + (has_name ? "" : "_missing" + std::to_string(++replaced_));
+  if (!has_name && named.empty()) name += "_missing" + std::to_string(++replaced_);
   for (XMLElement *child = include.FirstChildElement(), *next = nullptr; child != nullptr;
        child = next) {
     next = child->NextSiblingElement();
@@ -218,7 +296,8 @@ void SdfStage::replace(const fs::path& file, XMLElement& include) {
   include.DeleteAttribute("merge");
   include.SetAttribute("name", name.c_str());
   include.InsertNewChildElement("static")->SetText(true);
-  include.InsertNewChildElement("link")->SetAttribute("name", "link");
+  if (named.empty()) named.insert("link");
+  for (const std::string& link : named) add_link(include, link);
 }
 
 }  // namespace tether::sim

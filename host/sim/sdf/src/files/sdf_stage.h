@@ -37,6 +37,9 @@ class SdfStage {
   const std::vector<File>& files() const { return files_; }
   /// The original of a copy; other paths as they are.
   std::string original_of(const std::string& copy) const;
+  /// Leaves the innermost element of that name on a line out of a copy, with the visual, collision,
+  /// light, sensor or joint that it is part of. @return what was left out; empty: nothing
+  std::string leave_out(const File& file, const std::string& name, int line);
   /// The outermost element of an original as it was read; nullptr for other files.
   const tinyxml2::XMLElement* root_of(const std::string& original) const;
 
@@ -58,5 +61,14 @@ class SdfStage {
   std::map<std::string, std::unique_ptr<tinyxml2::XMLDocument>> originals_;
   int replaced_ = 0;
 };
+
+/// The last element of that name on the line: errors are of the innermost one. nullptr: none.
+template <class Element>
+Element* element_at(Element& element, const std::string& name, int line) {
+  Element* found = element.Name() == name && element.GetLineNum() == line ? &element : nullptr;
+  for (Element* child = element.FirstChildElement(); child; child = child->NextSiblingElement())
+    if (Element* inner = element_at(*child, name, line)) found = inner;
+  return found;
+}
 
 }  // namespace tether::sim

@@ -51,10 +51,10 @@ TEST(SdfWarning, NamesTheElement) {
       {visual_of("<geometry><polyline><point>0 0</point><point>1 0</point><point>0 1</point>"
                  "<height>1</height></polyline></geometry>"),
        5, "<polyline> of visual 'v'", Consequence::kMissing, true},
-      {visual_of(kSphere + "<material>\n<script><uri>a</uri><name>Gazebo/Blue</name></script>"
+      {visual_of(kSphere + "<material>\n<script><uri>a</uri><name>No/Such</name></script>"
                            "</material>"),
        6, "<script> of visual 'v'", Consequence::kLooksDifferent, true},
-      {visual_of(kSphere + "<material><script><name>Gazebo/Blue</name></script></material>"), 5,
+      {visual_of(kSphere + "<material><script><name>No/Such</name></script></material>"), 5,
        "<script> of visual 'v'", Consequence::kLooksDifferent, true},
       {visual_of(kSphere + "<material><pbr><metal><normal_map>n.png</normal_map></metal></pbr>"
                            "</material>"),

@@ -59,54 +59,6 @@ TEST(SdfLink, ReadsShapesAndMaterials) {
   EXPECT_EQ(link.collisions.at(0).friction, 0.5);
 }
 
-TEST(SdfLink, TakesTexturesOfPngAndJpegAndWarnsOfOthers) {
-  const ScratchFolder folder;
-  const auto load_texture = [&](const std::string& name) {
-    folder.write(name, "");
-    return load(
-        {folder.write("w.sdf", link_sdf(R"(<visual name='v'><geometry><sphere><radius>1</radius>
-        </sphere></geometry><material><pbr><metal>
-        <albedo_map>)" + name + "</albedo_map></metal></pbr></material></visual>")),
-         {},
-         {}});
-  };
-  const auto texture_of = [](const Loaded& loaded) {
-    return loaded.world.models.at(0).links.at(0).visuals.at(0).material.albedo_map.filename();
-  };
-  for (const char* name : {"t.png", "t.JPG", "t.jpeg"}) {
-    const Loaded loaded = load_texture(name);
-    EXPECT_EQ(texture_of(loaded), name);
-    EXPECT_THAT(loaded.warnings, IsEmpty());
-  }
-  const Loaded loaded = load_texture("t.tga");
-  EXPECT_EQ(texture_of(loaded), "");
-  EXPECT_THAT(loaded.warnings,
-              ElementsAre(is_warning(Consequence::kLooksDifferent, folder.path("w.sdf"), 7,
-                                     "<albedo_map> of visual 'v'")));
-}
-
-TEST(SdfLink, WarnsOfMaterialsThatOnlyTheMeshHas) {
-  const ScratchFolder folder;
-  folder.write("painted.obj", "mtllib a.mtl\nusemtl red\n");
-  folder.write("painted.dae", "<COLLADA><library_effects><effect/></library_effects></COLLADA>");
-  folder.write("plain.obj", "v 0 0 0\n");
-  folder.write("plain.stl", "solid usemtl");
-  const auto warnings_of = [&](const std::string& mesh, const std::string& material = "") {
-    return load({folder.write("w.sdf",
-                              link_sdf("<visual name='v'><geometry><mesh><uri>" + mesh +
-                                       "</uri></mesh></geometry>" + material + "</visual>")),
-                 {},
-                 {}})
-        .warnings;
-  };
-  for (const char* mesh : {"painted.obj", "painted.dae"}) {
-    EXPECT_THAT(warnings_of(mesh), ElementsAre(is_warning(Consequence::kLooksDifferent,
-                                                          folder.path("w.sdf"), 5, "visual 'v'")));
-    EXPECT_THAT(warnings_of(mesh, "<material><diffuse>1 0 0 1</diffuse></material>"), IsEmpty());
-  }
-  for (const char* mesh : {"plain.obj", "plain.stl"}) EXPECT_THAT(warnings_of(mesh), IsEmpty());
-}
-
 TEST(SdfLink, ReadsWhetherASubmeshIsCentered) {
   const ScratchFolder folder;
   folder.write("m.obj", "");
@@ -125,14 +77,14 @@ TEST(SdfLink, ReadsWhetherASubmeshIsCentered) {
   EXPECT_EQ(mesh.submesh, "a");
 }
 
-TEST(SdfLink, GoesWithoutMissingFilesIfAllowed) {
+TEST(SdfLink, GoesWithoutMissingFilesUnlessStrict) {
   const ScratchFolder folder;
   const auto file = folder.write("w.sdf", link_sdf(R"(<visual name='a'><geometry><mesh>
       <uri>model://gone/a.dae</uri></mesh></geometry></visual>
       <visual name='b'><geometry><sphere><radius>1</radius></sphere></geometry><material><pbr><metal>
       <albedo_map>https://fuel.gazebosim.org/1.0/o/models/m/1/files/t.png</albedo_map>
       </metal></pbr></material></visual>)"));
-  const Loaded loaded = load({file, {}, {}, {}, {.replaces_missing_models = true}});
+  const Loaded loaded = load({file, {}, {}});
   EXPECT_THAT(
       loaded.warnings,
       ElementsAre(is_warning(Consequence::kMissing, file, 6, "<uri> of visual 'a'"),

@@ -52,8 +52,8 @@ TEST_F(ModelPathTest, SearchesModelsFromTheNearestPlaceToFuelsCache) {
   setenv("GZ_SIM_RESOURCE_PATH", ("/nowhere:" + folder_.path("gz").string()).c_str(), 1);
   // Each is nearer than the one before.
   for (const char* place : {".ignition/fuel/fuel.ignitionrobotics.org/some one/models/thing/1",
-                            ".gz/fuel/fuel.gazebosim.org/someone/models/thing/2", "sdf/thing",
-                            "classic/thing", "ignition/thing", "gz/thing", "shipped/thing",
+                            ".gz/fuel/fuel.gazebosim.org/someone/models/thing/2", "shipped/thing",
+                            "sdf/thing", "classic/thing", "ignition/thing", "gz/thing",
                             "worlds/thing", "worlds/models/thing", "outer/models/thing"}) {
     folder_.write(std::string(place) + "/model.sdf", "");
     EXPECT_EQ(find("model://thing"), place);
@@ -61,6 +61,25 @@ TEST_F(ModelPathTest, SearchesModelsFromTheNearestPlaceToFuelsCache) {
   }
   EXPECT_EQ(find("package://thing"), "outer/models/thing");
   EXPECT_EQ(find("model://other"), "");
+}
+
+TEST_F(ModelPathTest, ABareNameIsAFileElseAModel) {
+  setenv("GZ_SIM_RESOURCE_PATH", folder_.path("gz").c_str(), 1);
+  folder_.write("gz/thing/model.sdf", "");
+  folder_.write("gz/a/b/model.sdf", "");
+  EXPECT_EQ(find("thing"), "gz/thing");
+  EXPECT_EQ(find("a/b"), "gz/a/b");
+  folder_.write("worlds/thing", "");
+  EXPECT_EQ(find("thing"), "worlds/thing");
+}
+
+TEST_F(ModelPathTest, APathMayBeginAboveTheModels) {
+  setenv("GAZEBO_MODEL_PATH", folder_.path("elsewhere/models").c_str(), 1);
+  for (const char* place : {"elsewhere/models/a/m.dae", "models/a/m.dae"}) {
+    std::filesystem::create_directories(folder_.path(place).parent_path());
+    folder_.write(place, "");
+    EXPECT_EQ(find("file://models/a/m.dae"), place);
+  }
 }
 
 TEST_F(ModelPathTest, FindsFuelModelsInItsCache) {

@@ -64,6 +64,22 @@ TEST(SdfSource, RefusesWhatMakesTheLibraryThrow) {
   EXPECT_THROW(ask_library({"f.sdf"}, []() -> int { throw std::bad_alloc(); }), std::bad_alloc);
 }
 
+TEST(SdfSource, GoesWithoutWhatHasAValueThatSdfDoesNotAllowUnlessStrict) {
+  const ScratchFolder folder;
+  const auto file = folder.write(
+      "w.sdf", world_sdf("<model name='m'><static>1</static><link name='l'>\n"
+                         "<sensor name='eye' type='camera'><camera>\n"
+                         "<horizontal_fov>0.05</horizontal_fov></camera></sensor>\n"
+                         "<visual name='v'><geometry><box>"
+                         "<size>1 1 1</size></box></geometry></visual></link></model>\n"
+                         "<light name='sun' type='directional'/>"));
+  EXPECT_THAT(refusal({file, {}, {}}).what(), ::testing::HasSubstr("'0.05'"));
+  const Loaded loaded = load({file, {}, {}});
+  EXPECT_THAT(loaded.warnings,
+              ::testing::ElementsAre(is_warning(Consequence::kMissing, file, 5, "sensor 'eye'")));
+  EXPECT_EQ(loaded.world.lights.size(), 1u);
+}
+
 TEST(SdfSource, PrintsNothing) {
   const ScratchFolder folder;
   const auto bad = folder.write("w.sdf", link_sdf("<inertial><mass>heavy</mass></inertial>"));

@@ -63,14 +63,14 @@ TEST_F(Includes, OfNothingAreErrorsAtEveryDepth) {
   expect_error(refusal({write_world("<include/>"), {}, {}}), folder_.path("w.sdf"), 3, "<include>");
 }
 
-TEST_F(Includes, OfNothingBecomeEmptyModelsIfAllowed) {
+TEST_F(Includes, OfNothingBecomeEmptyModelsUnlessStrict) {
   const auto outer = write_model("outer", "<link name='l'/>\n" + include("model://gone"));
   const auto world = write_world(include("model://outer") +
                                  "<include><uri>https://fuel.gazebosim.org/1.0/O/models/M</uri>"
                                  "<name>shed</name><pose>1 2 3 0 0 0</pose></include>\n"
                                  "<model name='near'><static>true</static>"
                                  "<pose relative_to='shed'>1 0 0 0 0 0</pose></model>");
-  const Loaded loaded = load({world, {}, {}, {}, {.replaces_missing_models = true}});
+  const Loaded loaded = load({world, {}, {}});
   EXPECT_THAT(loaded.warnings,
               ::testing::UnorderedElementsAre(
                   is_warning(Consequence::kMissing, world, 5,
@@ -78,6 +78,30 @@ TEST_F(Includes, OfNothingBecomeEmptyModelsIfAllowed) {
                   is_warning(Consequence::kMissing, outer, 5, "<include> of 'model://gone'"),
                   is_warning(Consequence::kBehavesDifferent, outer, 4, "model 'gone_missing1'")));
   EXPECT_EQ(loaded.world.models.back().X_WM.p, (uav::Vec3{2, 2, 3}));
+}
+
+TEST_F(Includes, OfNothingHaveTheLinksThatOthersName) {
+  const auto world = write_world(
+      "<model name='m'><link name='body'/>" + include("model://gone") +
+      "<include><uri>model://part</uri><name>p</name></include>\n"
+      "<joint name='j' type='fixed'><parent>body</parent><child>gone::base_link</child></joint>"
+      "<joint name='k' type='fixed'><parent>body</parent><child>p::arm::hand</child></joint>"
+      "</model>");
+  std::vector<std::string> links;
+  for (const Model& model : load({world, {}, {}}).world.models)
+    for (const Link& link : model.links) links.push_back(model.name + "/" + link.name);
+  EXPECT_THAT(links, ElementsAre("m/body", "m::gone/base_link", "m::p::arm/hand"));
+}
+
+TEST_F(Includes, OfAModelThatMustBeGeneratedSayHow) {
+  write_model("drone", "<link name='l'/>");
+  std::filesystem::remove(folder_.path("models/drone/model.sdf"));
+  folder_.write("models/drone/drone.sdf.jinja", "");
+  const auto world = write_world(include("model://drone"));
+  EXPECT_THAT(refusal({world, {}, {}}).what(), HasSubstr("'drone.sdf.jinja'"));
+  const Loaded loaded = load({world, {}, {}});
+  ASSERT_EQ(loaded.warnings.size(), 1u);
+  EXPECT_THAT(loaded.warnings[0].message, HasSubstr("'drone.sdf.jinja'"));
 }
 
 TEST_F(Includes, OfThemselvesAreRefused) {

@@ -7,8 +7,8 @@ using uav::Vec3;
 
 // Acceleration of S's origin less gravity, in B.
 Vec3 specific_force_B(const Vec3& p_BS, const uav::Quat& q_WB, const BodyMotion& motion,
-                      double gravity_m_s2) {
-  const Vec3 f_W = motion.a_WB_W + Vec3{0.0, 0.0, gravity_m_s2};
+                      const Vec3& at_rest_W) {
+  const Vec3 f_W = motion.a_WB_W + at_rest_W;
   return rotate(inverse(q_WB), f_W) + cross(motion.alpha_WB_B, p_BS) +
          cross(motion.w_WB_B, cross(motion.w_WB_B, p_BS));
 }
@@ -16,10 +16,10 @@ Vec3 specific_force_B(const Vec3& p_BS, const uav::Quat& q_WB, const BodyMotion&
 }  // namespace
 
 uav::ImuSample measure_imu(const ImuModel& imu, const uav::Pose& X_BS, const uav::Pose& X_WB,
-                           const BodyMotion& motion, double gravity_m_s2,
+                           const BodyMotion& motion, const Vec3& at_rest_W,
                            const MeasurementKey& key) {
   const uav::Quat q_SB = inverse(X_BS.q);
-  const Vec3 f_B = specific_force_B(X_BS.p, X_WB.q, motion, gravity_m_s2);
+  const Vec3 f_B = specific_force_B(X_BS.p, X_WB.q, motion, at_rest_W);
   uav::ImuSample sample;
   sample.sampled_at = key.at;
   sample.index = key.index;

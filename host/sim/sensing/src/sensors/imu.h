@@ -8,9 +8,10 @@
 namespace tether::sim {
 
 /// The sample of an IMU mounted at `X_BS`: rotation rate, specific force at its own origin (lever
-/// arm included) and attitude, the latter without error. Pure.
+/// arm included) and attitude, the latter without error. At rest, it measures `at_rest_W`
+/// (`felt_at_rest`). Pure.
 uav::ImuSample measure_imu(const ImuModel& imu, const uav::Pose& X_BS, const uav::Pose& X_WB,
-                           const BodyMotion& motion, double gravity_m_s2,
+                           const BodyMotion& motion, const uav::Vec3& at_rest_W,
                            const MeasurementKey& key);
 
 }  // namespace tether::sim

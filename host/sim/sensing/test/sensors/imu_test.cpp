@@ -18,7 +18,7 @@ Pose turned(const Vec3& axis, double angle_rad) {
 }
 
 uav::ImuSample imu_of(const Pose& X_BS, const Pose& X_WB, const BodyMotion& motion) {
-  return measure_imu({}, X_BS, X_WB, motion, kGravity, {});
+  return measure_imu({}, X_BS, X_WB, motion, {0.0, 0.0, kGravity}, {});
 }
 
 TEST(ImuTest, AtRestMeasuresGravityUpward) {
@@ -46,7 +46,7 @@ TEST(ImuTest, NoiseIsIndependentBetweenAxesAndSamples) {
   double products[7][7] = {};
   std::array<double, 7> errors{};
   for (std::uint64_t n = 0; n < kCount; ++n) {
-    const auto s = measure_imu(imu, {}, {}, {}, kGravity, {0, "alpha", "imu", n, {}});
+    const auto s = measure_imu(imu, {}, {}, {}, {0.0, 0.0, kGravity}, {0, "alpha", "imu", n, {}});
     const Vec3 &w = s.angular_velocity_rad_s, &f = s.specific_force_m_s2;
     errors = {w.x, w.y, w.z, f.x, f.y, f.z - kGravity, errors[0]};
     for (std::size_t i = 0; i < 7; ++i) {

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "mesh_file.h"
+
+#include <tether/sim/world.h>
+
+namespace tether::sim {
+
+/// Leaves out the visuals and collisions of models whose mesh cannot be used, with a warning each,
+/// unless the world is read strictly: then make_scene and make_physics_model refuse them.
+void leave_out_unusable_meshes(World& world, const MeshFiles& meshes, const WarningSink& warn);
+
+/// Replaces each collision of a model by one for each connected piece of its mesh, so that a UAV
+/// can fly between them: in a house of walls, through a gate. A mesh of more than 500 pieces stays
+/// one.
+void split_collisions(World& world, const MeshFiles& meshes);
+
+}  // namespace tether::sim
