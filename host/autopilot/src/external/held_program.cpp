@@ -57,16 +57,21 @@ void HeldProgram::require_alive() {
                                         log_.string());
 }
 
-void HeldProgram::let_rest(const std::function<void()>& serve) {
+// On a busy machine, what was sent may wake its thread some time later only.
+void HeldProgram::let_rest(const std::function<void()>& send, const std::function<void()>& serve) {
   constexpr Duration kLimit = std::chrono::seconds(30);
   const auto now = [] { return os::read_clock(CLOCK_MONOTONIC); };
   const Duration began = now();
+  const std::uint64_t at_first = os::turns_of(process_.pid());
+  send();
   for (;;) {
     serve();
     require_alive();
     const std::uint64_t before = os::turns_of(process_.pid());
     const os::ThreadStates states = os::thread_states(process_.pid());
-    if (states.runnable + states.on_disk == 0 && os::turns_of(process_.pid()) == before) return;
+    if (before != at_first && states.runnable + states.on_disk == 0 &&
+        os::turns_of(process_.pid()) == before)
+      return;
     if (now() - began > kLimit)
       throw Error(ErrorCode::kHung, name_ +
                                         " has not come to rest for 30 s of real time: it computes "

@@ -15,11 +15,12 @@ class HeldProgram {
   /// @throws Error(kSetup) if it cannot be started
   HeldProgram(std::string name, os::ChildCommand command);
 
-  /// Calls `serve` again and again until all threads of the program wait for something, and none
-  /// got a core between two looks.
+  /// Calls `send`, which wakes a thread of the program, then `serve` again and again until that has
+  /// had a core, all threads of the program wait for something, and none got a core between two
+  /// looks.
   /// @throws Error(kLinkLost) if it has ended, with the last line of its log; Error(kHung) if it
   /// does not come to rest
-  void let_rest(const std::function<void()>& serve);
+  void let_rest(const std::function<void()>& send, const std::function<void()>& serve);
   /// @throws Error(kLinkLost) as above
   void require_alive();
 

@@ -1,6 +1,6 @@
 // One step: what the companion has sent goes to PX4's port, and a TIMESYNC after it, whose answer
-// shows that all of it was taken. Then HIL_SENSOR gives PX4 its new time; it computes until it has
-// come to rest. What it has sent meanwhile, it has sent at this step.
+// shows that all of it was taken. Once PX4 rests, HIL_SENSOR gives it its new time; it computes
+// until it has come to rest again. What it has sent meanwhile, it has sent at this step.
 
 #include "external/held_program.h"
 #include "external/hil.h"
@@ -92,8 +92,12 @@ class Px4 : public FlightController {
 
   Actions step(const Sensed& sensed, const std::vector<Bytes>& received) override {
     Actions actions;
-    for (const Bytes& bytes : received) ports_.send_datagram(bytes);
-    if (!received.empty()) fence();
+    const auto pass_on = [&] {
+      for (const Bytes& bytes : received) ports_.send_datagram(bytes);
+      fence();
+    };
+    // What it does with them, it does before its time goes on.
+    if (!received.empty()) program_.let_rest(pass_on, [this] { serve(); });
     advance(settings_.boot + sensed.at.time_since_epoch(), readings_of(sensed));
     is_set_down_ = is_set_down_ || set_down_.is_done(sensed.at, sensed.truth);
     actions.setpoint = is_set_down_ ? rotors() : SetDown::setpoint();
@@ -150,13 +154,21 @@ class Px4 : public FlightController {
   void advance(Duration at, const Readings& exact) {
     const Readings readings =
         with_noise(exact, settings_.seed, static_cast<std::uint64_t>(at / kPx4Period));
-    if (std::exchange(gps_, at / kGpsPeriod) != at / kGpsPeriod)
-      ports_.send_stream(mavlink::encode(hil_gps(at, readings.position), kSimulator, sequence_++));
-    ports_.send_stream(mavlink::encode(hil_sensor(at, readings), kSimulator, sequence_++));
-    // Its actuators come late in its step. During the boot, none do.
-    constexpr Duration kWait = std::chrono::milliseconds(10);
-    if (std::exchange(has_sent_controls_, false)) ports_.wait_for_stream(kWait);
-    program_.let_rest([this] { serve(); });
+    const auto send = [&] {
+      std::vector<std::uint8_t> bytes;  // sent at once, so that they wake it once
+      const auto add = [&](const mavlink::Message& message) {
+        const auto frame = mavlink::encode(message, kSimulator, sequence_++);
+        bytes.insert(bytes.end(), frame.begin(), frame.end());
+      };
+      if (std::exchange(gps_, at / kGpsPeriod) != at / kGpsPeriod)
+        add(hil_gps(at, readings.position));
+      add(hil_sensor(at, readings));
+      ports_.send_stream(bytes);
+      // Its actuators come late in its step. During the boot, none do.
+      constexpr Duration kWait = std::chrono::seconds(1);
+      if (std::exchange(has_sent_controls_, false)) ports_.wait_for_stream(kWait);
+    };
+    program_.let_rest(send, [this] { serve(); });
   }
 
   // Takes what PX4 sends, so that its buffers are never full.

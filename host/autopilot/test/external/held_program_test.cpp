@@ -19,7 +19,7 @@ class Held : public testing::Test {
   std::string lost(const std::string& script) {
     HeldProgram program = start(script);
     try {
-      for (;;) program.let_rest([] {});
+      for (;;) program.let_rest([] {}, [] {});
     } catch (const Error& e) {
       EXPECT_EQ(e.code(), ErrorCode::kLinkLost);
       return e.what();
@@ -33,7 +33,7 @@ TEST_F(Held, RestsOnceItHasComputed) {
   HeldProgram program =
       start("i=0; while [ $i -lt 20000 ]; do i=$((i+1)); done; echo done; sleep 60");
   int served = 0;
-  program.let_rest([&] { ++served; });
+  program.let_rest([] {}, [&] { ++served; });
   std::ifstream log(log_);
   std::string line;
   std::getline(log, line);

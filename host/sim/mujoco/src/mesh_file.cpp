@@ -7,6 +7,7 @@
 #include "conversions.h"
 #include "gltf_check.h"
 #include "mesh_pieces.h"
+#include "obj_check.h"
 
 #include <algorithm>
 #include <cctype>
@@ -321,6 +322,7 @@ void MeshFiles::Imported::read(const std::filesystem::path& file) try {
   std::string bytes = os::read_file(file, kLargestMesh);
   const std::string type = type_of(file);
   if (type == ".dae") check_collada(bytes, file);
+  if (type == ".obj") check_obj(bytes, file);
   if (type == ".glb" || type == ".gltf") check_gltf(bytes, bytes.size() + companions.bytes(), file);
   keep_reader(importer, type);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
