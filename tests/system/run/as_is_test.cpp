@@ -224,7 +224,8 @@ TEST_F(AsIsCamera, IsAVideoDeviceWhoseBuffersOverflow) {
   }
 }
 
-// By GStreamer if that has its plugins, whose threads are charged as well; and by V4L2.
+// By GStreamer if that has its plugins, and by V4L2. GStreamer's threads are charged as well, and
+// may compute in parallel: then there is no answer (3).
 TEST_F(AsIsCamera, OpencvOfPythonReadsTheCameraAtItsRate) {
   const Output output = fly_python(
       "import cv2, threading, time\n"
@@ -240,7 +241,7 @@ TEST_F(AsIsCamera, OpencvOfPythonReadsTheCameraAtItsRate) {
       "    camera.release()\n"
       "assert not cv2.VideoCapture(1).isOpened()\n"
       "print('all went well')\n");
-  EXPECT_EQ(output.code, 0) << output.err << said();
+  EXPECT_TRUE(output.code == 0 || output.code == 3) << output.err << said();
   EXPECT_NE(said().find("all went well"), std::string::npos) << said();
   EXPECT_NE(said().find("looked for /dev/video1"), std::string::npos) << said();
 }
