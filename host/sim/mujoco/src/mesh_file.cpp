@@ -306,6 +306,24 @@ class CompanionFiles final : public Assimp::IOSystem {
   MeshGeometry mesh_;
 };
 
+// The mesh itself, and its companions. Where a library of materials is missing, Assimp looks for
+// one of the mesh's own name, which Assimp's class would answer with the mesh.
+class MeshBytes : public Assimp::MemoryIOSystem {
+ public:
+  using MemoryIOSystem::MemoryIOSystem;
+  bool Exists(const char* name) const override {
+    return !is_own_library(name) && MemoryIOSystem::Exists(name);
+  }
+  Assimp::IOStream* Open(const char* name, const char* mode) override {
+    return is_own_library(name) ? nullptr : MemoryIOSystem::Open(name, mode);
+  }
+
+ private:
+  static bool is_own_library(std::string_view name) {
+    return name.starts_with(AI_MEMORYIO_MAGIC_FILENAME) && name.ends_with(".mtl");
+  }
+};
+
 }  // namespace
 
 struct MeshFiles::Imported {
@@ -331,8 +349,8 @@ void MeshFiles::Imported::read(const std::filesystem::path& file) try {
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
   // A file could name any other. The importer deletes the object in the end, but would leave it if
   // it got another now; it does not read again.
-  importer.SetIOHandler(new Assimp::MemoryIOSystem(
-      reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(), &companions));
+  importer.SetIOHandler(new MeshBytes(reinterpret_cast<const std::uint8_t*>(bytes.data()),
+                                      bytes.size(), &companions));
   const std::string name_of_bytes = AI_MEMORYIO_MAGIC_FILENAME + type;
   const aiScene* scene = importer.ReadFile(name_of_bytes, 0);
   if (!scene || !scene->mRootNode) {
