@@ -1,4 +1,4 @@
-#include "support/trials.h"
+#include "support/companion_flight.h"
 
 #include <algorithm>
 #include <set>
@@ -12,35 +12,12 @@
 namespace tether::system_test {
 namespace {
 
-class FlightControllerTest : public testing::Test {
+class FlightControllerTest : public CompanionFlight {
  protected:
   /// Its program computes `computing_ms` for each call. Returns the exit code.
   int fly(const std::string& computing_ms, const std::string& controller = "\"built-in\"") {
-    write_text(folder_ / "s.toml", R"(name = "companion"
-world = "yard"
-time_limit_s = 40
-[[uav]]
-name = "uav1"
-model = "hummingbird"
-position_m = [0, 0, 0.1]
-flight_controller = )" + controller + R"(
-[sut]
-command = [")" COMPANION_SUT_PROGRAM R"("]
-[[condition]]
-name = "host"
-policy = "conservative_barrier"
-clock = "scripted"
-computing_ms = )" + computing_ms + "\n[[metric]]\nkind = \"time_required\"\n");
-    const Output output =
-        run(tether({"run", folder_ / "s.toml", "--quiet", "--force", "--out", folder_ / "out"}));
-    said_ = output.err;
-    if (output.code <= 1) result_ = read_result(folder_ / "out");
-    return output.code;
+    return CompanionFlight::fly(controller, computing_ms);
   }
-
-  TempFolder folder_;
-  nlohmann::json result_;
-  std::string said_;
 };
 
 TEST_F(FlightControllerTest, FliesACompanionsSquareAndTheRecordHasTheirMessages) {

@@ -1,4 +1,4 @@
-#include "support/trials.h"
+#include "support/companion_flight.h"
 
 #include <string>
 
@@ -11,7 +11,7 @@ namespace {
 
 using testing::HasSubstr;
 
-class Px4Flight : public testing::Test {
+class Px4Flight : public CompanionFlight {
  protected:
   void SetUp() override {
     std::filesystem::create_directories(folder_ / "build/bin");
@@ -20,35 +20,8 @@ class Px4Flight : public testing::Test {
   }
   /// Returns the exit code.
   int fly(const std::string& settings, const std::string& out = "out") {
-    write_text(folder_ / "s.toml", R"(name = "companion"
-world = "yard"
-time_limit_s = 40
-[[uav]]
-name = "uav1"
-model = "hummingbird"
-position_m = [0, 0, 0.1]
-flight_controller = { kind = "px4", )" +
-                                       settings + R"( }
-[sut]
-command = [")" COMPANION_SUT_PROGRAM R"("]
-[[condition]]
-name = "host"
-policy = "conservative_barrier"
-clock = "scripted"
-computing_ms = 0.01
-[[metric]]
-kind = "time_required"
-)");
-    const Output output =
-        run(tether({"run", folder_ / "s.toml", "--quiet", "--force", "--out", folder_ / out}));
-    said_ = output.err;
-    if (output.code <= 1) result_ = read_result(folder_ / out);
-    return output.code;
+    return CompanionFlight::fly("{ kind = \"px4\", " + settings + " }", "0.01", out);
   }
-
-  TempFolder folder_;
-  nlohmann::json result_;
-  std::string said_;
 };
 
 TEST_F(Px4Flight, ACompanionFliesASquareAndTwoFlightsAreTheSame) {
