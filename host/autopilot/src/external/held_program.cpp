@@ -1,46 +1,29 @@
 #include "external/held_program.h"
 
-#include <algorithm>
-#include <fstream>
 #include <utility>
+#include <vector>
 
 #include <sched.h>
 #include <unistd.h>
 
 #include <tether/base/error.h>
 #include <tether/os/clock.h>
+#include <tether/os/machine.h>
 #include <tether/os/process_table.h>
+#include <tether/os/text_file.h>
 
 namespace tether::autopilot {
 namespace {
 
-/// The last core that this process may use: others are for programs that are measured.
-int last_core() {
-  cpu_set_t set;
-  CPU_ZERO(&set);
-  ::sched_getaffinity(0, sizeof set, &set);
-  int last = 0;
-  for (std::size_t core = 0; core < CPU_SETSIZE; ++core)
-    if (CPU_ISSET(core, &set)) last = static_cast<int>(core);
-  return last;
-}
-
 // A program that may set the machine's clock would, to the simulation's time.
 os::ChildCommand held(os::ChildCommand command) {
-  command.cpus = {last_core()};
+  // The last core that this process may use: others are for programs that are measured.
+  if (const std::vector<int> cpus = os::allowed_cpus(); !cpus.empty()) command.cpus = {cpus.back()};
   if (::geteuid() == 0)
     command.arguments.insert(command.arguments.begin(),
                              {"setpriv", "--bounding-set", "-sys_time", "--"});
   command.end_signal = SIGKILL;
   return command;
-}
-
-std::string last_line_of(const std::filesystem::path& log) {
-  std::ifstream file(log);
-  std::string last;
-  for (std::string line; std::getline(file, line);)
-    if (line.find_first_not_of(" \t\r") != std::string::npos) last = line;
-  return last;
 }
 
 }  // namespace
@@ -51,7 +34,7 @@ HeldProgram::HeldProgram(std::string name, os::ChildCommand command)
 void HeldProgram::require_alive() {
   const auto& exit = process_.poll();
   if (!exit) return;
-  const std::string line = last_line_of(log_);
+  const std::string line = os::last_line(os::read_whole(log_));
   throw Error(ErrorCode::kLinkLost, name_ + " " + exit->description +
                                         (line.empty() ? "" : ": \"" + line + "\"") + "; see " +
                                         log_.string());
