@@ -68,9 +68,12 @@ std::vector<pid_t> listed_children(pid_t process) {
 void count(const std::string& stat, std::string_view left_out, ThreadStates& sum) {
   const auto begin = stat.find('('), end = stat.rfind(')');
   if (begin == std::string::npos || end == std::string::npos || end + 2 >= stat.size()) return;
-  if (!left_out.empty() && std::string_view(stat).substr(begin + 1, end - begin - 1) == left_out)
+  const char state = stat[end + 2];
+  if (!left_out.empty() && std::string_view(stat).substr(begin + 1, end - begin - 1) == left_out) {
+    if (state == 'R') ++sum.left_out_runnable;
     return;
-  switch (stat[end + 2]) {
+  }
+  switch (state) {
     case 'R':
       ++sum.runnable;
       break;

@@ -125,7 +125,9 @@ TEST_F(ProcessTable, LeavesOutThreadsOfAName) {
   pthread_getname_np(pthread_self(), name.data(), name.size());
   pthread_setname_np(pthread_self(), "odd) R (name");
   EXPECT_EQ(thread_states(getpid()).runnable, 1);
-  EXPECT_EQ(thread_states(getpid(), "odd) R (name").runnable, 0);
+  const ThreadStates without = thread_states(getpid(), "odd) R (name");
+  EXPECT_EQ(without.runnable, 0);
+  EXPECT_EQ(without.left_out_runnable, 1);
   pthread_setname_np(pthread_self(), name.data());
 }
 

@@ -21,7 +21,7 @@ void SutLooks::add(const ThreadStates& states, Duration represented) {
     computing += represented;
     of_all_threads += states.runnable * represented;
     if (states.runnable > 1) ++parallel_looks;
-  } else if (!states.is_halted) {
+  } else if (!states.is_halted && !states.is_served) {
     (states.is_on_disk ? on_disk : waiting) += represented;
   }
 }

@@ -56,6 +56,14 @@ TEST_F(Looks, AddUpToTheTimeThatASutWaits) {
   EXPECT_EQ(looks.of_all_threads, 2 * looks.computing);
 }
 
+// On a busy machine, the client library's thread waits for a core while it holds a lock.
+TEST_F(Looks, DoNotCountWaitingForTheClientLibrary) {
+  states_ = {.is_served = true};
+  EXPECT_EQ(of_silent_sut().waiting, 0s);
+  states_ = {.is_on_disk = true, .is_served = true};
+  EXPECT_EQ(of_silent_sut().on_disk, 0s);
+}
+
 // It sends progress, because it computes a little between its sleeps.
 TEST_F(Looks, EndARunWhoseSutWaitsLongerThanTheHangLimit) {
   options_.hang_limit = 1s;

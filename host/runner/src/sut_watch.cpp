@@ -50,7 +50,8 @@ std::optional<coordinator::ThreadStates> SutWatch::states(std::size_t uav) const
   const os::ThreadStates states = os::thread_states(process->second, link::kClientThread);
   return coordinator::ThreadStates{.runnable = states.runnable,
                                    .is_halted = states.halted > 0,
-                                   .is_on_disk = states.on_disk > 0};
+                                   .is_on_disk = states.on_disk > 0,
+                                   .is_served = states.left_out_runnable > 0};
 }
 
 std::vector<campaign::Doubt> doubts_of(const coordinator::SutReport& sut,

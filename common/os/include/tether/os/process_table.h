@@ -36,12 +36,13 @@ std::vector<pid_t> children_of(pid_t process);
 
 /// How many threads of a process and of its descendants do what, at one instant.
 struct ThreadStates {
-  int runnable = 0;  ///< run, or wait for a core
-  int waiting = 0;   ///< on something that can take any time: a timer, a lock, a socket
-  int halted = 0;    ///< by a signal or a debugger
-  int on_disk = 0;   ///< wait until the disk, or memory that is on it, has answered
+  int runnable = 0;           ///< run, or wait for a core
+  int waiting = 0;            ///< on something that can take any time: a timer, a lock, a socket
+  int halted = 0;             ///< by a signal or a debugger
+  int on_disk = 0;            ///< wait until the disk, or memory that is on it, has answered
+  int left_out_runnable = 0;  ///< as `runnable`, of the threads that are left out
 };
-/// Threads named `left_out` are not counted; nor are processes that have ended.
+/// Threads named `left_out` are not among the others; processes that have ended are not counted.
 ThreadStates thread_states(pid_t process, std::string_view left_out = {});
 
 /// How often the threads of a process and of its descendants have got a core so far. The same

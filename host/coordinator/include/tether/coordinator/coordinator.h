@@ -119,12 +119,14 @@ struct ThreadStates {
   int runnable = 0;         ///< run, or wait for a core
   bool is_halted = false;   ///< one is stopped by a debugger or a signal
   bool is_on_disk = false;  ///< one waits for the disk
+  /// A thread of the client library runs or waits for a core: the others may wait for it alone.
+  bool is_served = false;
 };
 
 /// What the threads of a SUT did while it should have computed: each look counts for the WT until
 /// the next one. Waiting that is an interaction is not part of it.
 struct SutLooks {
-  Duration waiting{0};         ///< none was runnable, halted, or on the disk
+  Duration waiting{0};         ///< none was runnable, halted, on the disk, or served
   Duration on_disk{0};         ///< none was runnable or halted, and one on the disk
   Duration computing{0};       ///< some were runnable
   Duration of_all_threads{0};  ///< the same, added up over them
