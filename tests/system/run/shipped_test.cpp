@@ -62,20 +62,23 @@ std::vector<Flight> flights_of(const std::string& name,
   std::vector<Flight> flights;
   const auto loaded =
       scenario::load_scenario(TETHER_SOURCE_DIR "/data/scenarios/" + name + ".toml");
-  // Interpreters take long to start on slow targets, and emulators are refused.
   const bool is_as_is = loaded.uavs.front().sut.is_as_is;
-  const double limit_s = is_as_is ? 5.0 : 0.3;
+  const auto limit_s = [&](const computer::Clock& clock) {
+    // An interpreter with its libraries takes a second to start on a busy machine, times the
+    // factor.
+    if (is_as_is) return 3.0 + 2.0 * clock.factor;
+    return std::max(0.3, 12.0 * to_seconds(clock.computing));
+  };
   for (const scenario::Condition& condition : loaded.conditions) {
     // By --target, below. The folder of programs is not found from a copy of the scenario.
     if (condition.computers[0].target && !condition.computers[0].target->program_folder.empty())
       continue;
-    flights.push_back(
-        {name,
-         condition.name,
-         {},
-         false,
-         why_skipped(condition, loaded.uavs.size()),
-         std::max(limit_s, 12.0 * to_seconds(condition.computers[0].clock.computing))});
+    flights.push_back({name,
+                       condition.name,
+                       {},
+                       false,
+                       why_skipped(condition, loaded.uavs.size()),
+                       limit_s(condition.computers[0].clock)});
   }
   for (std::size_t i = 0; i < targets.size(); ++i) {
     const scenario::Target& target = targets[i];
@@ -83,13 +86,14 @@ std::vector<Flight> flights_of(const std::string& name,
     if (target.name == "counted_host") continue;
     scenario::Condition condition = loaded.conditions.front();
     if (!why_not_on(condition, target).empty()) continue;
+    // Emulators are refused.
     if (is_as_is && (target.emulator || !target.program_folder.empty())) continue;
     place_on(condition, target);
     const std::string skipped = why_skipped(condition, loaded.uavs.size());
     for (const bool concurrent : {false, true})
       if (!concurrent || (target.clock.kind == computer::ClockKind::kWall && !is_as_is))
         flights.push_back({name, loaded.conditions.front().name, target, concurrent, skipped,
-                           limit_s, (i + first_pair) % 4 == 0});
+                           limit_s(target.clock), (i + first_pair) % 4 == 0});
   }
   return flights;
 }
