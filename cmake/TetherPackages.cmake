@@ -7,6 +7,7 @@
 #   tether-counter  tether-counter      the plugin of emulators that counts what a program computes
 #   client       libtether-client1      the shared library of other people's programs
 #   client-dev   libtether-client-dev   what it takes to build them
+#   python       python3-tether         the same library, and runs and records, for Python
 #   doc          tether-doc             the site of scripts/docs, if it was built before CMake configures
 
 set(components tether-sut)
@@ -27,9 +28,10 @@ set(package_of_tether tether)
 set(package_of_tether-sut tether-sut)
 set(package_of_tether-counter tether-counter)
 if(TARGET tether-client)
-  list(APPEND components client client-dev)
+  list(APPEND components client client-dev python)
   set(package_of_client libtether-client1)
   set(package_of_client-dev libtether-client-dev)
+  set(package_of_python python3-tether)
 endif()
 
 # ---- The documents that every Debian package has -------------------------------------------------
@@ -121,6 +123,7 @@ if(NOT TETHER_TARGET_ONLY)
         "examples/own-sut:/usr/share/doc/libtether-client-dev/examples/own-sut"
         "examples/depth-camera:/usr/share/doc/libtether-client-dev/examples/depth-camera"
         "examples/own-simulator:../examples/own-simulator"
+        "examples/python-face-anchor:/usr/share/doc/python3-tether/examples/python-face-anchor"
         "host/sim/protocol/schema/:/usr/share/tether/schema/"
         "target/client/c_api/include/:/usr/include/")
       string(REGEX MATCH "^(.*):(.*)$" match "${place}")
@@ -221,6 +224,19 @@ describe(client-dev libdevel
   "Headers for C and C++17, files for CMake and pkg-config, and examples of"
   "programs that Tether can fly.")
 set(CPACK_DEBIAN_CLIENT-DEV_PACKAGE_DEPENDS "libtether-client1 (= ${PROJECT_VERSION})")
+
+describe(python python
+  "test in simulation whether a UAV's computer is fast enough, in Python"
+  "Programs of UAVs in Python fly in Tether by this package, and read images"
+  "without a copy. Notebooks start flights by it, and read results and records.")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_ARCHITECTURE all)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.11), libtether-client1 (>= ${PROJECT_VERSION})")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "python3-numpy, python3-zstandard")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "tether, python3-opencv, python3-pandas, python3-matplotlib")
+# Compiled once, and not at each start of a program.
+file(WRITE "${documents}/postinst" "#!/bin/sh\nset -e\n[ \"$1\" != configure ] || py3compile -p python3-tether\n")
+file(WRITE "${documents}/prerm" "#!/bin/sh\nset -e\npy3clean -p python3-tether\n")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA "${documents}/postinst" "${documents}/prerm")
 
 describe(doc doc
   "documents of Tether as a site"

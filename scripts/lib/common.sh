@@ -33,6 +33,10 @@ packages_test=(git python3 cloc libgtest-dev libgmock-dev libbenchmark-dev clang
 packages_test+=(make pkgconf mandoc)
 # What a program as it is reads its camera by (data/programs/mavlink_face_anchor.py).
 packages_test+=(python3-opencv)
+# The package for Python: what its programs and records need, and the checker of its types.
+packages_test+=(python3-numpy python3-zstandard mypy)
+# What notebooks use besides; large, and for `scripts/test --full` only.
+packages_notebook=(python3-matplotlib python3-pandas)
 # The schema of JUnit files.
 packages_test+=(libxml2-utils)
 # Boards in the tests: this machine, over SSH.
@@ -86,7 +90,7 @@ install_packages() {
 command -v node >/dev/null || packages_test+=(nodejs)
 command -v npm >/dev/null || packages_test+=(npm)
 
-# install_for PURPOSE...: build, demo, test, fuzz, tidy, coverage, package, arm64, gazebo or docs
+# install_for PURPOSE...: build, demo, test, fuzz, tidy, coverage, package, arm64, gazebo, docs or notebook
 install_for() {
   local purpose names=()
   for purpose in "$@"; do
@@ -101,7 +105,8 @@ install_for() {
       arm64) names+=("${packages_arm64[@]}") ;;
       gazebo) names+=("${packages_gazebo[@]}") ;;
       docs) names+=("${packages_docs[@]}") ;;
-      *) fail "'$purpose': build, demo, test, fuzz, tidy, coverage, package, arm64, gazebo or docs" ;;
+      notebook) names+=("${packages_notebook[@]}") ;;
+      *) fail "'$purpose': build, demo, test, fuzz, tidy, coverage, package, arm64, gazebo, docs or notebook" ;;
     esac
   done
   mapfile -t names < <(printf '%s\n' "${names[@]}" | sort -u)
