@@ -5,6 +5,7 @@
 
 import ctypes
 import dataclasses
+import functools
 import os
 import pathlib
 from collections.abc import Callable
@@ -103,24 +104,28 @@ def is_there(status: int) -> bool:
 # ---- Structs -------------------------------------------------------------------------------------
 
 _STRUCTS: dict[type, type[ctypes.Structure]] = {}
+_MEMBERS: dict[type, list[tuple[str, Callable[[Any], Any] | None]]] = {}  # and what makes Python's value, if anything
 
 
 def struct_of(sample: type) -> type[ctypes.Structure]:
     """The C struct of a class of `samples`."""
     if sample not in _STRUCTS:
         fields: list[tuple[str, Any]] = []
+        _MEMBERS[sample] = []
         for name, hint in sample.__annotations__.items():
             first, *padding = getattr(hint, "__metadata__", None) or (struct_of(hint),)
             fields += [(name, first)] + [("reserved", kind) for kind in padding]
+            is_struct = hint in _STRUCTS
+            convert = functools.partial(to_python, hint) if is_struct else bool if hint.__origin__ is bool else None
+            _MEMBERS[sample].append((name, convert))
         _STRUCTS[sample] = type(sample.__name__, (ctypes.Structure,), {"_fields_": fields})
     return _STRUCTS[sample]
 
 
 def to_python(sample: type[T], struct: Any) -> T:
     """The members of a struct as an object of its class."""
-    members = ((hint, getattr(struct, name)) for name, hint in sample.__annotations__.items())
-    return sample(*(hint.__origin__(value) if hasattr(hint, "__metadata__") else to_python(hint, value)
-                    for hint, value in members))
+    return sample(*[getattr(struct, name) if convert is None else convert(getattr(struct, name))
+                    for name, convert in _MEMBERS[sample]])
 
 
 def filled(sample: type[T], function: Callable[..., int], *arguments: Any) -> T | None:
