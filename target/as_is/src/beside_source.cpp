@@ -5,10 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <ctime>
 #include <utility>
-
-#include <tether/os/clock.h>
 
 namespace tether::as_is {
 namespace {
@@ -28,7 +25,7 @@ class BesideSource final : public client::TimeSource {
   }
   Duration elapsed_in_children() const override {
     if (!is_held_) is_beside_ = Threads::are_several();
-    const Duration own = os::read_clock(CLOCK_THREAD_CPUTIME_ID);
+    const Duration own = source_->counted_of_thread();
     const Duration others =
         is_beside_
             ? last_.load() - Duration(std::llround(static_cast<double>(own.count()) * factor_))
@@ -38,6 +35,7 @@ class BesideSource final : public client::TimeSource {
   }
   Status complete() const override { return source_->complete(); }
   void leave_out(Duration computed) override { source_->leave_out(computed); }
+  Duration counted_of_thread() const override { return source_->counted_of_thread(); }
   void exclude_calling_thread() override { source_->exclude_calling_thread(); }
   void release_calling_thread() override { source_->release_calling_thread(); }
 

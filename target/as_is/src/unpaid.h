@@ -1,10 +1,7 @@
 #pragma once
 
-#include <ctime>
-
 #include <tether/base/time.h>
 #include <tether/client/sut_clock.h>
-#include <tether/os/clock.h>
 
 namespace tether::as_is {
 
@@ -41,8 +38,8 @@ class Unpaid {
   }
 
  private:
-  void go_on() { since_ = os::read_clock(CLOCK_THREAD_CPUTIME_ID); }
-  void pause() { source_->leave_out(os::read_clock(CLOCK_THREAD_CPUTIME_ID) - since_); }
+  void go_on() { since_ = source_->counted_of_thread(); }
+  void pause() { source_->leave_out(source_->counted_of_thread() - since_); }
 
   static thread_local Unpaid* current_ __attribute__((tls_model("initial-exec")));
 

@@ -39,6 +39,9 @@ class WallSource final : public TimeSource {
   Duration origin_ = read_clock(CLOCK_MONOTONIC);  // small numbers lose nothing when scaled
 };
 
+// Of the calling thread, by leave_out and for looking at children.
+thread_local Duration t_left_out __attribute__((tls_model("initial-exec"))){0};
+
 class CpuSource final : public TimeSource {
  public:
   explicit CpuSource(double factor) : factor_(factor) { os::adopt_orphans(); }
@@ -50,7 +53,10 @@ class CpuSource final : public TimeSource {
   Status complete() const override;
   void leave_out(Duration computed) override {
     const std::lock_guard lock(mutex_);
-    excluded_before_ += computed;
+    exclude(computed);
+  }
+  Duration counted_of_thread() const override {
+    return read_clock(CLOCK_THREAD_CPUTIME_ID) - t_left_out;
   }
   void exclude_calling_thread() override;
   void release_calling_thread() override;
@@ -60,6 +66,10 @@ class CpuSource final : public TimeSource {
   void read_children() const;
   Duration own() const;
   Duration children() const;
+  void exclude(Duration of_thread) const {
+    excluded_before_ += of_thread;
+    t_left_out += of_thread;
+  }
 
   double factor_;
   mutable std::mutex mutex_;
@@ -108,7 +118,7 @@ Duration CpuSource::children() const {
   const LivingDescendants living = living_descendants();
   if (living.deaf) deaf_ = living.deaf;
   if (!excluded_clock_ || ::pthread_equal(excluded_thread_, ::pthread_self()) == 0) {
-    excluded_before_ += read_clock(CLOCK_THREAD_CPUTIME_ID) - begin;
+    exclude(read_clock(CLOCK_THREAD_CPUTIME_ID) - begin);
   }
   return waited + living.used;
 }

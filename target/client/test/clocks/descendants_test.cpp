@@ -170,6 +170,17 @@ TEST_F(CpuOfDescendants, AreLookedAtForFree) {
   EXPECT_LT(2 * measured(), cpu(CLOCK_THREAD_CPUTIME_ID) - before);
 }
 
+TEST_F(CpuOfDescendants, AreNotLookedAtForLessThanNothing) {
+  start([this] { stay(); });
+  await_stay();
+  begin_ = source_->elapsed();
+  const Duration counted_before = source_->counted_of_thread();
+  for (int i = 0; i < 500; ++i) source_->elapsed();
+  source_->leave_out(source_->counted_of_thread() - counted_before);
+  work(milliseconds(5));
+  EXPECT_GE(measured(), milliseconds(5));
+}
+
 TEST_F(CpuOfDescendants, IsIncompleteIfAProcessIgnoresTheEndOfChildren) {
   EXPECT_TRUE(source_->complete());
   struct sigaction keeps {

@@ -33,6 +33,8 @@ class TimeSource {
   /// So much of what the calling thread has computed was work for the client library: it is not
   /// counted. Only if computing is what is measured.
   virtual void leave_out(Duration) {}
+  /// What is counted of the calling thread's computing so far. Only if that is what is measured.
+  virtual Duration counted_of_thread() const { return Duration(0); }
 
   /// Until its release, the calling thread works for the client library; a source that measures
   /// threads separately does not count it. One thread at a time.
