@@ -117,7 +117,8 @@ bool is_answered(const UavsReport& report) {
   const bool is_unseen = std::ranges::any_of(report.points, [](const UavsPoint& point) {
     return std::ranges::any_of(point.trials, &campaign::TrialResult::has_unseen_time);
   });
-  return report.answer.is_decided() && report.answer.carried >= report.question.least && !is_unseen;
+  return report.answer.is_decided() && report.answer.carried >= report.question.least &&
+         is_shown(report) && !is_not_for_sharing(report) && !is_unseen;
 }
 
 std::vector<Answer> uavs_answers(const UavsReport& report) {
