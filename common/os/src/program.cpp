@@ -1,10 +1,16 @@
 #include <algorithm>
+#include <cstdint>
 #include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <optional>
 #include <sstream>
 #include <string_view>
 #include <system_error>
 #include <vector>
 
+#include <elf.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <tether/base/error.h>
@@ -96,6 +102,74 @@ std::filesystem::path find_file(const std::string& name) {
 }
 
 }  // namespace
+
+namespace {
+
+struct ElfFacts {
+  bool has_loader = false;
+  bool is_of_go = false;
+};
+
+/// Whether notes name Go's compiler: each has three words (the sizes of name and text, a type), the
+/// name and the text, which end at a multiple of four.
+bool has_go_note(std::string_view notes) {
+  constexpr std::string_view kGo("Go\0", 4);
+  const auto padded = [](std::size_t size) { return (size + 3) / 4 * 4; };
+  for (Elf64_Nhdr head; notes.size() >= sizeof head;) {
+    std::memcpy(&head, notes.data(), sizeof head);
+    notes.remove_prefix(sizeof head);
+    if (notes.substr(0, head.n_namesz) == kGo) return true;
+    notes.remove_prefix(std::min(notes.size(), padded(head.n_namesz) + padded(head.n_descsz)));
+  }
+  return false;
+}
+
+/// None: it is a script, damaged, or not of 64 bits.
+std::optional<ElfFacts> elf_facts(const std::filesystem::path& file) {
+  constexpr std::size_t kMostNotes = 65536;
+  std::ifstream stream(file, std::ios::binary);
+  const auto read = [&](std::uint64_t at, void* to, std::size_t size) {
+    stream.seekg(static_cast<std::streamoff>(at))
+        .read(static_cast<char*>(to), static_cast<std::streamsize>(size));
+    return stream.good();
+  };
+  Elf64_Ehdr head;
+  if (!read(0, &head, sizeof head) || std::memcmp(head.e_ident, ELFMAG, SELFMAG) != 0 ||
+      head.e_ident[EI_CLASS] != ELFCLASS64)
+    return std::nullopt;
+  ElfFacts facts;
+  for (std::size_t i = 0; i < head.e_phnum; ++i) {
+    Elf64_Phdr part;
+    if (!read(head.e_phoff + i * head.e_phentsize, &part, sizeof part)) return std::nullopt;
+    if (part.p_type == PT_INTERP) facts.has_loader = true;
+    if (part.p_type != PT_NOTE || part.p_filesz > kMostNotes) continue;
+    std::string notes(part.p_filesz, '\0');
+    if (!read(part.p_offset, notes.data(), notes.size())) return std::nullopt;
+    facts.is_of_go = facts.is_of_go || has_go_note(notes);
+  }
+  return facts;
+}
+
+}  // namespace
+
+void require_preloadable(const std::filesystem::path& program) {
+  const auto refuse = [&](const std::string& why) {
+    throw Error(ErrorCode::kSetup, "\"" + program.string() + "\" cannot fly as it is: " + why)
+        .about(program.string());
+  };
+  struct stat status {};
+  if (stat(program.c_str(), &status) == 0 && (status.st_mode & (S_ISUID | S_ISGID)) != 0)
+    refuse("it is set-user-ID or set-group-ID, so no library can be preloaded. Type: chmod ug-s " +
+           program.string());
+  const auto facts = elf_facts(program);
+  if (!facts) return;
+  if (facts->is_of_go)
+    refuse(
+        "it is written in Go, which does not ask the C library for the time. Let it use Tether's "
+        "C library");
+  if (!facts->has_loader)
+    refuse("it is linked statically, so no library can be preloaded. Link it dynamically");
+}
 
 std::filesystem::path find_program(const std::string& name) {
   std::filesystem::path file = find_file(name);

@@ -1,6 +1,8 @@
 #include <cstdlib>
+#include <cstring>
 #include <string>
 
+#include <elf.h>
 #include <gtest/gtest.h>
 
 #include <tether/base_testing/scratch_folder.h>
@@ -78,6 +80,50 @@ TEST(FindProgram, AdvisesByWhatIsWrongWithThePath) {
   make_program(scratch, "tab");
   scratch.write("tab", "#!\t /bin/sh\t-e\n");
   EXPECT_EQ(find_program(folder + "/tab"), folder + "/tab");
+}
+
+/// A program of one part that is loaded, with a note of that name and, if it has one, a loader.
+std::string elf_program(const std::string& note_name, bool has_loader) {
+  Elf64_Ehdr head{};
+  std::memcpy(head.e_ident, ELFMAG, SELFMAG);
+  head.e_ident[EI_CLASS] = ELFCLASS64;
+  head.e_phoff = sizeof head;
+  head.e_phentsize = sizeof(Elf64_Phdr);
+  head.e_phnum = 2;
+  const Elf64_Nhdr note_head{4, 0, 4};
+  std::string note(sizeof note_head, '\0');
+  std::memcpy(note.data(), &note_head, sizeof note_head);
+  note += note_name + std::string(4 - note_name.size(), '\0');
+  Elf64_Phdr parts[2]{};
+  parts[0].p_type = has_loader ? PT_INTERP : PT_LOAD;
+  parts[1].p_type = PT_NOTE;
+  parts[1].p_offset = sizeof head + sizeof parts;
+  parts[1].p_filesz = note.size();
+  std::string file(sizeof head + sizeof parts, '\0');
+  std::memcpy(file.data(), &head, sizeof head);
+  std::memcpy(file.data() + sizeof head, parts, sizeof parts);
+  return file + note;
+}
+
+TEST(RequirePreloadable, RefusesProgramsWhoseTimeCannotBeSet) {
+  const ScratchFolder scratch;
+  require_preloadable(own_file());
+  require_preloadable(make_program(scratch, "script"));
+  require_preloadable(scratch.write("dynamic", elf_program("GNU", true)));
+  require_preloadable(scratch.write("cut", elf_program("GNU", false).substr(0, 100)));
+  const auto set_id = make_program(scratch, "set-id");
+  fs::permissions(set_id, fs::perms::set_uid, fs::perm_options::add);
+  const std::pair<fs::path, std::string> cases[] = {
+      {scratch.write("static", elf_program("GNU", false)), "it is linked statically"},
+      {scratch.write("go", elf_program("Go", true)), "it is written in Go"},
+      {set_id, "chmod ug-s " + set_id.string()},
+  };
+  for (const auto& [file, why] : cases) {
+    const Error error =
+        thrown_error(ErrorCode::kSetup, [&, &program = file] { require_preloadable(program); });
+    EXPECT_EQ(error.subject(), file);
+    EXPECT_NE(std::string(error.what()).find(why), std::string::npos) << error.what();
+  }
 }
 
 }  // namespace

@@ -90,7 +90,7 @@ std::vector<SutResult> sut_results(const record::Record& record,
                                    std::vector<Warning>& warnings) {
   std::vector<SutResult> suts;
   for (const record::SutInfo& info : record.header.suts) {
-    SutResult sut{.uav = info.uav, .sut = info.sut, .clock = info.clock};
+    SutResult sut{.uav = info.uav, .sut = info.sut, .clock = info.clock, .as_is = info.as_is};
     const std::size_t index = suts.size();
     const bool is_synchronised = record.header.policy == record::kConservativeBarrier;
     if (is_synchronised && record.footer && index < record.footer->et_at_end.size()) {

@@ -94,6 +94,7 @@ void fields(auto& io, Maybe<judge::ClauseVerdict> auto& m) {
 void fields(auto& io, Maybe<SutResult> auto& m) {
   io("uav", m.uav);
   io("sut", m.sut);
+  if (io.has("as_is", m.as_is)) io("as_is", m.as_is);
   fields(io, m.clock);
   io("et_at_end_s", m.et_at_end);
   io("finished", m.finished);

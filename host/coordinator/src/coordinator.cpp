@@ -349,7 +349,8 @@ Party Coordinator::Impl::party(const Session& session, WallTime now) const {
               .silence = watchdog_.silence(session.uav, now),
               .counted = session.hello.clock.kind == computer::ClockKind::kCounted,
               .received_bytes = session.received_bytes,
-              .computer = options_.uavs[session.uav].computer};
+              .computer = options_.uavs[session.uav].computer,
+              .as_is = options_.uavs[session.uav].as_is};
   for (const PendingInteraction& pending : session.open)
     party.reply_at = std::min(party.reply_at.value_or(ExecTime::max()), pending.entry.reply_at);
   return party;

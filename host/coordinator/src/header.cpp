@@ -149,6 +149,7 @@ record::Header Coordinator::Impl::make_header() const {
          .max_angular_acceleration_rad_s2 = max_angular_acceleration_rad_s2(uav.airframe),
          .energy = describe_energy(uav, world().gravity_m_s2)});
     record::SutInfo& sut = header.suts.back();
+    sut.as_is = options_.uavs[session.uav].as_is;
     if (!std::holds_alternative<uav::ConstantDelay>(session.command_latency))
       sut.max_command_latency = uav::bounds(session.command_latency).second;
     if (const auto& loss = options_.uavs[session.uav].setpoint_loss) {

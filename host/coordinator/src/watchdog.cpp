@@ -112,10 +112,14 @@ std::optional<Ending> Watchdog::over_time(SimTime st) const {
 std::optional<Ending> Watchdog::overdue(const std::vector<Party>& parties, SimTime st) const {
   for (const Party& party : parties) {
     if (!running_ && !party.joined && party.silence > limits_.connect)
-      return Ending{RunEnd::kSutLost,
-                    fmt::format("the SUT of UAV \"{}\" did not connect within {} s "
-                                "(connect_limit_s). A SUT calls tether_connect() to connect",
-                                party.uav, to_seconds(limits_.connect))};
+      return Ending{
+          RunEnd::kSutLost,
+          fmt::format("the SUT of UAV \"{}\" did not connect within {} s "
+                      "(connect_limit_s). {}",
+                      party.uav, to_seconds(limits_.connect),
+                      party.as_is ? "A script has to start the program with 'exec', and must "
+                                    "not remove LD_PRELOAD"
+                                  : "A SUT calls tether_connect() to connect")};
     if (!running_ || !party.computing || party.silence <= limits_.hang) continue;
     const std::string blocking = describe_blocking(st, parties);
     return Ending{

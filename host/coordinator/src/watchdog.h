@@ -24,6 +24,7 @@ struct Party {
   bool counted = false;                ///< its work is counted, and a sign of life
   std::uint32_t received_bytes = 0;    ///< of a reply that takes long to arrive
   std::string computer{};              ///< on which it runs; empty: all on the same
+  bool as_is = false;                  ///< it does not use Tether's library
 };
 
 /// "it was computing; last message at ET 1.200000 s"

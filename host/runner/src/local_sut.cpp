@@ -123,6 +123,7 @@ LocalSutCommand local_sut_command(const scenario::Sut& sut,
   const bool is_launched = target && !target->launcher.empty();
   std::string& program = words[program_at];
   const auto file = is_launched ? find_launched(program, *target) : os::find_program(program);
+  if (sut.is_as_is) os::require_preloadable(file);
   LocalSutCommand command{{}, {}};
   if (program_at > 0) {
     // tether-exec and launchers search for it in PATH only.

@@ -4,7 +4,6 @@
 #include "stall_watch.h"
 
 #include <algorithm>
-#include <fstream>
 #include <map>
 #include <utility>
 
@@ -12,6 +11,7 @@
 
 #include <tether/os/child_process.h>
 #include <tether/os/process_table.h>
+#include <tether/os/text_file.h>
 
 namespace tether::runner {
 
@@ -35,15 +35,6 @@ board::BoardSut board_sut(board::Board& board, const scenario::Scenario& scenari
           .supervisor = command.supervisor,
           .environment = environment_of(uav.placement.name, index, run),
           .log = log};
-}
-
-/// The last line that is not empty; empty if there is none.
-std::string last_line(const std::filesystem::path& file) {
-  std::ifstream log(file);
-  std::string last;
-  for (std::string line; std::getline(log, line);)
-    if (!line.empty()) last = line;
-  return last;
 }
 
 // How long a finished SUT may take to exit.
@@ -93,7 +84,7 @@ void SutProcesses::start(const scenario::Scenario& scenario, const SutRun& run,
       sut.process = board->start(there);
     } else {
       sut.process = std::make_unique<os::ChildProcess>(local_sut(uav, run, i, sut.files, sut.log));
-      sut.program = sut.process->program();
+      sut.program = uav.sut.is_as_is ? uav.sut.command.front() : sut.process->program();
     }
     suts_.push_back(std::move(sut));
   }
@@ -131,7 +122,8 @@ std::optional<std::string> SutProcesses::early_end() {
 
 bool SutProcesses::has_failed_to_connect(const std::string& address) {
   return std::ranges::any_of(suts_, [&](const Sut& sut) {
-    return sut.process->poll() && last_line(sut.log).find(address) != std::string::npos;
+    return sut.process->poll() &&
+           os::last_line(os::read_whole(sut.log)).find(address) != std::string::npos;
   });
 }
 
@@ -197,7 +189,7 @@ std::vector<std::string> SutProcesses::bring_back() {
 }
 
 std::string SutProcesses::describe_end(Sut& sut, const std::string& reason) const {
-  const std::string last = last_line(sut.log);
+  const std::string last = os::last_line(os::read_whole(sut.log));
   const os::ChildExit& exit = *sut.process->poll();
   using board::SutEnd;
   const SutEnd end = sut.board ? sut.board->end_of(exit, last) : SutEnd{{}, exit.description};

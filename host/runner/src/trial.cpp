@@ -51,11 +51,21 @@ Boards hold_boards(const TrialSpec& spec, const std::stop_token& stop) {
   return boards;
 }
 
-std::vector<campaign::TaskEnd> task_ends(const coordinator::RunReport& report) {
+std::vector<campaign::TaskEnd> task_ends(const TrialSpec& spec,
+                                         const coordinator::RunReport& report) {
   std::vector<campaign::TaskEnd> ends;
-  for (const auto& sut : report.suts)
-    if (sut.finish)
-      ends.push_back({sut.uav, sut.finish->reached_goal, sut.finish->outcome, sut.finish->details});
+  for (std::size_t i = 0; i < report.suts.size(); ++i) {
+    const auto& [uav, sut, finish, et, looks] = report.suts[i];
+    if (!finish) continue;
+    std::string outcome = finish->outcome;
+    // A program as it is tells why in its output only.
+    if (spec.scenario.uavs[i].sut.is_as_is && !finish->reached_goal) {
+      const auto output = os::read_whole(spec.folder / fmt::format("sut-{}.log", uav));
+      if (const std::string last = os::last_line(output); !last.empty())
+        outcome += fmt::format("; the last line of its output: {}", last);
+    }
+    ends.push_back({uav, finish->reached_goal, std::move(outcome), finish->details});
+  }
   return ends;
 }
 
@@ -87,8 +97,8 @@ campaign::TrialResult evaluate(const TrialSpec& spec, const Conducted& conducted
   if (!std::filesystem::exists(file))
     throw Error(ErrorCode::kSetup, {file.string()}, "the record was removed during the run");
   const bool is_recorded = report.end != RunEnd::kRecordFailed;
-  auto result =
-      campaign::make_result(spec.scenario, spec.condition, conducted.record, task_ends(report));
+  auto result = campaign::make_result(spec.scenario, spec.condition, conducted.record,
+                                      task_ends(spec, report));
   result.this_run.wall = report.wall;
   if (conducted.target && is_recorded)
     result.this_run.target = report_of(*conducted.target, conducted.target_after, result.reason);

@@ -156,6 +156,7 @@ coordinator::RunOptions run_options(const TrialSpec& spec, const TrialInputs& in
     uav.setpoint_loss = spec.scenario.uavs[i].setpoint_loss;
     if (const auto& controller = spec.scenario.uavs[i].flight_controller)
       uav.controller = controller_options(*controller, simulator, i, spec.seed, spec.folder);
+    uav.as_is = spec.scenario.uavs[i].sut.is_as_is;
     const scenario::Computer& own = computer_of(spec.condition, i);
     uav.clock = own.clock;
     uav.computer = own.name;

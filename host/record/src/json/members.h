@@ -312,6 +312,7 @@ void members(auto& io, Maybe<SutInfo> auto& m) {
     io.object("replay", [&](auto& replay) { members(replay, io.value_of(m.replay)); });
   if (io.has("computer", !m.computer.empty())) io("computer", m.computer);
   if (io.has("launcher", !m.launcher.empty())) io("launcher", m.launcher);
+  if (io.has("as_is", m.as_is)) io("as_is", m.as_is);
   if (io.has("extent_m", m.extent_m > 0.0)) io.positive("extent_m", m.extent_m);
   if (io.has("max_angular_acceleration_rad_s2", m.max_angular_acceleration_rad_s2 > 0.0))
     io.positive("max_angular_acceleration_rad_s2", m.max_angular_acceleration_rad_s2);

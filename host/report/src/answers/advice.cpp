@@ -86,6 +86,7 @@ std::string uavs_advice(const ConditionVerdict& lead) {
 std::string sentence_of(const Advice& advice, const Verdict& verdict) {
   using Kind = Advice::Kind;
   const ConditionVerdict& lead = verdict.first();
+  const bool is_as_is = lead.has_as_is;
   switch (advice.kind) {
     case Kind::kMendSetUp:
       return lead.planned == 1 ? "Fix this, then fly again."
@@ -97,19 +98,25 @@ std::string sentence_of(const Advice& advice, const Verdict& verdict) {
     case Kind::kFlyRest:
       return "The campaign is not complete: `--resume` flies the rest.";
     case Kind::kShowWaits:
-      return "Wait by the client library (`sleep_for`, `sleep_until`, a read with a timeout), "
-             "which "
-             "Tether sees. If that is not possible, fly with `clock = \"wall\"` and "
-             "`concurrent = true`, for which all time counts.";
+      return is_as_is ? "Of a program as it is, Tether sees what its processes wait for from each "
+                        "other and from the UAV. Keep other waits (a device, a server) out of the "
+                        "flight, or fly with `clock = \"wall\"`, for which all time counts."
+                      : "Wait by the client library (`sleep_for`, `sleep_until`, a read with a "
+                        "timeout), which Tether sees. If that is not possible, fly with "
+                        "`clock = \"wall\"` and `concurrent = true`, for which all time counts.";
     case Kind::kCountDisk:
       return "Keep files out of the flight, or fly with `clock = \"wall\"`, for which all time "
              "counts.";
     case Kind::kUnstretch:
-      return "Wait by the client library (`sleep_for`, `sleep_until`, a read with a timeout), or "
-             "fly on the board itself, or with a factor of 1.";
+      return is_as_is ? "Fly on the board itself, or with a factor of 1."
+                      : "Wait by the client library (`sleep_for`, `sleep_until`, a read with a "
+                        "timeout), or fly on the board itself, or with a factor of 1.";
     case Kind::kRunConcurrent:
-      return "Fly with `clock = \"wall\"` and `concurrent = true`, for which threads that compute "
-             "in parallel count once.";
+      return fmt::format(
+          "Let one thread compute at a time (in OpenCV, `cv::setNumThreads(1)`), or fly with "
+          "`clock "
+          "= \"wall\"`{}, for which threads that compute in parallel count once.",
+          is_as_is ? "" : " and `concurrent = true`");
     case Kind::kReadAudit:
       return fmt::format(
           "Run `tether audit` on the records of “{}”. If the program stamps its own time, check "
@@ -137,7 +144,8 @@ std::string sentence_of(const Advice& advice, const Verdict& verdict) {
           return "Look for the reason in the program, the scenario and its limits.";
       }
     case Kind::kQuietMachine:
-      return "Fly again while nothing else runs on the machine, or with a counted clock.";
+      return fmt::format("Fly again while nothing else runs on the machine{}.",
+                         is_as_is ? "" : ", or with a counted clock");
     case Kind::kVarySeeds:
       return kVarySeeds;
     case Kind::kFindThreshold:

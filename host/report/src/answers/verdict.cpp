@@ -203,6 +203,8 @@ ConditionVerdict verdict_of(const campaign::ConditionResults& results) {
     const campaign::ThisRun& first = results.trials.front().this_run;
     verdict.sizing = first.sizing;
     verdict.is_on_real_board = first.target && !first.target->address.empty();
+    verdict.has_as_is =
+        std::ranges::any_of(results.trials.front().suts, &campaign::SutResult::as_is);
   }
   std::vector<const campaign::TrialResult*> flown;
   for (const campaign::TrialResult& trial : results.trials) {

@@ -1,5 +1,6 @@
 #include "answers/flights.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -50,6 +51,24 @@ TEST(Verdict, OfAProgramThatWaitedALittleHoldsIfThatCannotChangeIt) {
   doubts = {{campaign::Doubt::Kind::kSlightWait, "uav1", 0.03},
             {campaign::Doubt::Kind::kBusyMachine, "", 0.3}};
   EXPECT_THAT(answers_of({verdict_of(scenario)})[0].rest, testing::Not(HasSubstr("waited")));
+}
+
+TEST(Verdict, AdvisesAProgramAsItIsNothingThatOnlyProgramsWithTheLibraryCanDo) {
+  campaign::ScenarioResults scenario = flights(1, 0);
+  campaign::TrialResult& trial = scenario.conditions[0].trials[0];
+  using Kind = campaign::Doubt::Kind;
+  for (const Kind kind : {Kind::kUnseenWait, Kind::kParallelThreads, Kind::kStretchedWait})
+    trial.this_run.doubts.push_back({kind, "uav1", 4.86});
+  const auto advice = [&] {
+    return fmt::format("{}", fmt::join(advice_of({verdict_of(scenario)}), ""));
+  };
+  const testing::Matcher<std::string> needs_library =
+      testing::AnyOf(HasSubstr("client library"), HasSubstr("concurrent"));
+  EXPECT_THAT(advice(), needs_library);
+  trial.suts.resize(1);
+  trial.suts[0].as_is = true;
+  EXPECT_THAT(advice(),
+              testing::AllOf(HasSubstr("`clock = \"wall\"`"), testing::Not(needs_library)));
 }
 
 TEST(Verdict, OfReplayedTimesHasTheDoubtsOfTheirMeasurement) {

@@ -13,4 +13,8 @@ std::filesystem::path own_file();
 /// script without its interpreter.
 std::filesystem::path find_program(const std::string& name);
 
+/// @throws Error(kSetup), about the program, if no library can be preloaded into it, or if it does
+/// not ask the C library for the time: it is static, set-user-ID, or written in Go.
+void require_preloadable(const std::filesystem::path& program);
+
 }  // namespace tether::os

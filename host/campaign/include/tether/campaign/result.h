@@ -63,6 +63,7 @@ struct SutResult {
   bool reached_goal = false;
   std::string outcome{};  ///< one line: why
   std::string details{};  ///< one JSON object, or empty
+  bool as_is = false;     ///< it does not use Tether's library
 
   friend bool operator==(const SutResult&, const SutResult&) = default;
 };

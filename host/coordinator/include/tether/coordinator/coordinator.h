@@ -63,6 +63,7 @@ struct UavOptions {
   std::optional<uav::SetpointLoss> setpoint_loss{};  ///< none: it keeps the last set-point
   /// None: commands of the SUT are those of the vehicle's own loops.
   std::optional<ControllerOptions> controller{};
+  bool as_is = false;  ///< its SUT is a program as it is, for the record
 };
 
 /// A computer with several programs, which share its cores: a virtual one (sync::SharedCores), or

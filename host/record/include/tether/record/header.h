@@ -159,6 +159,7 @@ struct SutInfo {
   Duration setpoint_timeout{0};                   ///< 0: there is none
   std::string on_setpoint_loss{};                 ///< with a timeout: "keep", "hover", …
   std::optional<ControllerInfo> controller{};     ///< none: its commands are the vehicle's own
+  bool as_is = false;  ///< it does not use Tether's library: tether-exec --as-is runs it
 };
 /// A computer whose cores several SUTs share. On a virtual one, while n compute, each gets min(1,
 /// cores / n) of a core; a core with pinned programs is shared by these only. On a real one, its

@@ -124,7 +124,9 @@ struct ConditionVerdict {
   std::optional<MissReason> miss{};  ///< of the three rulings on a missed goal
   /// As in campaign::ThisRun, of the first flight.
   std::optional<campaign::Sizing> sizing{};
-  bool is_on_real_board = false;  ///< as far as the first flight says
+  // As far as the first flight says:
+  bool is_on_real_board = false;
+  bool has_as_is = false;  ///< a program that does not use Tether's library
 
   /// All that has flown is one flight: the only one, or one that was flown several times.
   bool is_one_flight() const { return distinct == 1 && (planned == 1 || flown > 1); }
