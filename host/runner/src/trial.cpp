@@ -256,7 +256,7 @@ campaign::TrialResult run_trial(const TrialSpec& spec, const FindBackEnd& find_b
   require_sut_programs(spec.scenario, spec.condition, spec.waits_for_sut);
   if (!spec.was_tried) try_suts(spec.scenario, spec.condition, spec.waits_for_sut);
   const StartSimulator start = prepare(back_end, std::move(world), warnings.sink());
-  TrialFolder folder(spec.folder, spec.earlier);
+  TrialFolder folder(spec.folder, spec.earlier, spec.scenario.file);
 
   const std::string started_at = os::utc_now();
   campaign::TrialResult result;

@@ -115,13 +115,23 @@ std::string first_of(std::vector<std::string> names) {
                      more > 0 ? fmt::format(" and {} more", more) : "");
 }
 
-void remove_earlier_run(const fs::path& folder, const campaign::TrialResult* run) {
+/// Made for an earlier run, and not changed into the user's own.
+bool is_made_scenario(const fs::path& file) {
+  return file.filename() == kMadeScenarioFile &&
+         os::begin_of(file, kMadeScenario.size()) == kMadeScenario;
+}
+
+void remove_earlier_run(const fs::path& folder, const campaign::TrialResult* run,
+                        const fs::path& kept) {
   std::vector<fs::path> all = all_below(folder);
+  std::error_code ignored;
+  std::erase_if(all, [&](const fs::path& file) { return fs::equivalent(file, kept, ignored); });
   std::vector<std::string> of_others;
   for (const fs::path& file : all) {
     const std::string path = file.lexically_relative(folder).string();
     const bool is_of_sut = run && std::ranges::count(run->this_run.sut_files, path) > 0;
-    if (!is_folder(file) && !is_own(path) && !is_of_sut && !campaign::is_junit(file))
+    if (!is_folder(file) && !is_own(path) && !is_of_sut && !campaign::is_junit(file) &&
+        !is_made_scenario(file))
       of_others.push_back(path);
   }
   std::ranges::sort(of_others);
@@ -162,7 +172,7 @@ os::FileDescriptor reserve_room(const std::filesystem::path& folder) {
 
 }  // namespace
 
-TrialFolder::TrialFolder(const fs::path& folder, EarlierRun earlier)
+TrialFolder::TrialFolder(const fs::path& folder, EarlierRun earlier, const fs::path& kept)
     : folder_(folder), claim_(folder, campaign::FolderClaim::By::kRun) {
   // Fail now, not when the result is written.
   if (access(folder.c_str(), R_OK | W_OK | X_OK) != 0) fail(folder, std::strerror(errno));
@@ -175,7 +185,7 @@ TrialFolder::TrialFolder(const fs::path& folder, EarlierRun earlier)
           folder, fmt::format("has {}. Choose another folder with --out, or replace that run "
                               "with --force.",
                               describe(run)));
-    remove_earlier_run(folder, run ? &*run : nullptr);
+    remove_earlier_run(folder, run ? &*run : nullptr, kept);
   }
   refuse_remains(folder);
   room_ = reserve_room(folder);

@@ -80,6 +80,19 @@ TEST_F(TrialFolderTest, ReplacesAnEarlierRunAsAWholeOrRefusesIt) {
   EXPECT_THAT(content(), ElementsAre());
 }
 
+TEST_F(TrialFolderTest, KeepsTheScenarioOfTheRunAndReplacesOneThatWasMadeForAnother) {
+  const std::string made = scratch_.write(kMadeScenarioFile, std::string(kMadeScenario) + "\n");
+  fly();
+  { const TrialFolder folder(scratch_.path(), EarlierRun::kReplace, made); }
+  EXPECT_THAT(content(), ElementsAre(kMadeScenarioFile));
+  fly();
+  { const TrialFolder folder(scratch_.path(), EarlierRun::kReplace); }
+  EXPECT_THAT(content(), ElementsAre());
+  scratch_.write(kMadeScenarioFile, "name = \"of_the_user\"\n");
+  fly();
+  expect_refused(EarlierRun::kReplace, kMadeScenarioFile);
+}
+
 TEST_F(TrialFolderTest, ReplacesJunitFilesOfAnyNameButNoOtherXml) {
   fly();
   scratch_.write("ci/j.xml", std::string(campaign::kJunitBegin) + "</testsuites>\n");

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <tether/campaign/folder_claim.h>
@@ -18,6 +19,10 @@ inline constexpr const char* kWarningsFile = "warnings.txt";
 /// Output of the simulator's processes.
 inline constexpr const char* kSimulatorLog = "simulator.log";
 
+/// The scenario of a program that was given without one, and how its file begins.
+inline constexpr const char* kMadeScenarioFile = "scenario.toml";
+inline constexpr std::string_view kMadeScenario = "# Made by `tether run -- PROGRAM`";
+
 /// What happens to an earlier run in a trial's folder.
 enum class EarlierRun {
   kRefuse,
@@ -29,10 +34,12 @@ enum class EarlierRun {
 /// the trial may fill the disk. Not thread-safe.
 class TrialFolder {
  public:
+  /// @param kept a file that stays if it is in the folder: the scenario of this run
   /// @throws Error(kUsage), without a change, if another run writes to the folder, it belongs to a
   ///   campaign or is one, or it has an earlier run that must not be replaced or lies beside files
   ///   of others; Error(kSetup) if the file system does not allow it. The subject is the path.
-  TrialFolder(const std::filesystem::path& folder, EarlierRun earlier);
+  TrialFolder(const std::filesystem::path& folder, EarlierRun earlier,
+              const std::filesystem::path& kept = {});
 
   /// The files that the SUTs of this run wrote to it so far, relative to it and sorted.
   std::vector<std::string> files_of_suts() const;
