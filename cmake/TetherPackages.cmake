@@ -15,7 +15,7 @@ install(DIRECTORY data/missions data/programs data/rigs DESTINATION "${CMAKE_INS
   USE_SOURCE_PERMISSIONS)
 if(NOT TETHER_TARGET_ONLY)
   list(APPEND components tether tether-counter)
-  install(DIRECTORY data/campaigns data/energy data/engines data/models data/profiles data/scenarios data/worlds
+  install(DIRECTORY data/campaigns data/energy data/engines data/models data/profiles data/scenarios data/templates data/worlds
     DESTINATION "${CMAKE_INSTALL_DATADIR}/tether" COMPONENT tether)
   set(site "${PROJECT_SOURCE_DIR}/build/docs/html")
   install(DIRECTORY "${site}" DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/tether-doc" COMPONENT doc OPTIONAL)

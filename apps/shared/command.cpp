@@ -60,6 +60,10 @@ void limit(CLI::Option& option, const Allowed& allowed) {
   if (allowed.check)
     option.check(CLI::Validator([check = allowed.check](auto& text) { return check(text); }, ""));
   if (allowed.is_required) option.required();
+  if (allowed.follows_dashes)
+    option.check(CLI::Validator(
+        [](auto& text) { return "unexpected argument '" + text + "'; it has to follow '--'"; },
+        ""));
   if (allowed.is_one_each) option.expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   if (allowed.has_commas) option.delimiter(',');
   if (allowed.count > 0) option.expected(allowed.count);

@@ -51,7 +51,9 @@ std::string shipped_kind(const CLI::App& command) {
 /// The kind of shipped file that the value of an option names; empty: none.
 std::string shipped_kind(const CLI::Option& option) {
   const std::string name = option.get_lnames().front();
-  return name == "target" || name == "profile" ? name : "";
+  for (const char* kind : {"target", "profile", "world", "model"})
+    if (name == kind) return kind;
+  return "";
 }
 
 /// What a value can be, unless any text can.

@@ -36,6 +36,8 @@ struct Allowed {
   bool has_commas = false;   ///< between the values of a list
   int count = 0;             ///< of values in a list; 0: any
   std::string usual{};       ///< default, where the destination does not have it
+  /// Of an argument that is a list: it gets the words after "--", and only these.
+  bool follows_dashes = false;
 };
 Allowed range(double least, double most);
 Allowed one_of(std::vector<std::string> words);

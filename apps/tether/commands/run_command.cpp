@@ -1,5 +1,6 @@
 #include "back_ends.h"
 #include "commands/commands.h"
+#include "commands/program_scenario.h"
 #include "options/common_options.h"
 #include "options/junit_option.h"
 #include "reading/file_kind.h"
@@ -14,8 +15,10 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <tether/campaign/refuse_folder.h>
 #include <tether/campaign/result.h>
 #include <tether/os/program.h>
+#include <tether/os/shell_word.h>
 #include <tether/os/terminal.h>
 #include <tether/os/text_file.h>
 #include <tether/report/junit.h>
@@ -34,8 +37,9 @@ namespace tether::app {
 namespace {
 
 struct RunOptions {
-  runner::TrialRequest request;  ///< but for what the following members name
-  std::filesystem::path scenario;
+  runner::TrialRequest request;    ///< but for what the following members name
+  std::filesystem::path scenario;  ///< empty: it is made for the program
+  ProgramOptions program;
   std::string target;
   std::filesystem::path profile;
   std::vector<std::string> settings;  ///< "KEY=VALUE"
@@ -53,18 +57,24 @@ std::filesystem::path find_file(const scenario::ShippedFiles& shipped, scenario:
   return file;
 }
 
-runner::TrialRequest make_request(const RunOptions& options) {
+runner::TrialRequest make_request(const RunOptions& options,
+                                  const std::filesystem::path& made_scenario = {}) {
   const auto shipped = scenario::ShippedFiles::of_program(os::own_file());
   const auto find = [&](scenario::ShippedKind kind, const std::filesystem::path& given,
                         FileKind wanted) {
     return std::filesystem::absolute(find_file(shipped, kind, given, wanted));
   };
   runner::TrialRequest request = options.request;
-  request.scenario = find(scenario::ShippedKind::kScenario, options.scenario, FileKind::kScenario);
+  const bool is_made = !made_scenario.empty();  // its profile is in it
+  request.scenario =
+      is_made ? made_scenario
+              : find(scenario::ShippedKind::kScenario, options.scenario, FileKind::kScenario);
+  if (is_made && request.condition.empty() && options.program.cpu_factor)
+    request.condition = "target";
   for (const std::string& text : options.settings)
     request.settings.push_back(scenario::parse_setting(text, std::filesystem::current_path()));
   request.reading = world_options(options.reading, shipped);
-  if (!options.profile.empty())
+  if (!options.profile.empty() && !is_made)
     request.profile = find(scenario::ShippedKind::kProfile, options.profile, FileKind::kProfile);
   request.target = runner::parse_target_choice(options.target);
   if (auto* file = std::get_if<std::filesystem::path>(&request.target))
@@ -72,8 +82,9 @@ runner::TrialRequest make_request(const RunOptions& options) {
   return request;
 }
 
-int run_and_print(const RunOptions& options, const std::stop_token& stop) {
-  const runner::TrialSpec spec = runner::make_trial(make_request(options));
+int run_and_print(const RunOptions& options, const runner::TrialRequest& request,
+                  const std::stop_token& stop) {
+  const runner::TrialSpec spec = runner::make_trial(request);
   campaign::TrialResult result;
   {
     StatusLine line;
@@ -108,14 +119,53 @@ int run_and_print(const RunOptions& options, const std::stop_token& stop) {
   return campaign::exit_code(result);
 }
 
+/// A scenario for the program that is not yet in a folder of a flight.
+void require_room(const runner::TrialRequest& request) {
+  const auto kind = request.folder.empty() ? std::nullopt : kind_of(request.folder);
+  if (kind == FileKind::kCampaignFolder || (kind == FileKind::kRun && !request.replaces_earlier))
+    campaign::refuse_folder(
+        request.folder, kind == FileKind::kRun
+                            ? "has a run. Choose another folder with --out, or replace that run "
+                              "with --force."
+                            : "has a campaign. Choose another folder with --out.");
+}
+
+int run_program(const RunOptions& options, const std::stop_token& stop) {
+  const ProgramScenario made =
+      make_program_scenario(options.program, options.profile.string(),
+                            scenario::ShippedFiles::of_program(os::own_file()));
+  require_room(options.request);
+  const std::filesystem::path& folder = options.request.folder;
+  ProgramScenarioFile file(folder.empty() ? "out" / std::filesystem::path(made.name) : folder,
+                           made);
+  try {
+    const int code = run_and_print(options, make_request(options, file.path()), stop);
+    file.keep();
+    if (!options.quiet && !options.json)
+      print(fmt::format(
+          "The scenario of this flight, to change and to fly again: {}\n",
+          os::shell_word(file.path().lexically_proximate(std::filesystem::current_path()))));
+    return code;
+  } catch (const Error& error) {
+    throw about_option(error, file.path(), made);
+  }
+}
+
 int run_one(const RunOptions& options, const std::stop_token& stop) {
-  return with_junit(options.junit, options.scenario.string(),
-                    [&] { return run_and_print(options, stop); });
+  const bool has_program = !options.program.command.empty();
+  if (!has_program) require_no_program_options(options.program);
+  const std::string suite =
+      has_program ? options.program.command.front() : options.scenario.string();
+  return with_junit(options.junit, suite, [&] {
+    return has_program ? run_program(options, stop)
+                       : run_and_print(options, make_request(options), stop);
+  });
 }
 
 Options run_rows(RunOptions& o) {
   return concatenated(
-      {{scenario_argument(o.scenario),
+      {{{"scenario", "Name of a shipped scenario, or a file (TOML). Or a program follows --",
+         &o.scenario},
         condition_option(o.request.condition),
         {"--profile PROFILE",
          "Sensor profile that overrides the scenario's settings: name of a shipped profile, or a "
@@ -166,6 +216,7 @@ Options run_rows(RunOptions& o) {
         {"--images", "Record the camera images that the SUT reads", &o.request.record_images},
         {"--json", "Print result.json instead of a summary", &o.json},
         junit_option(o.junit)},
+       program_rows(o.program),
        reading_options(o.reading),
        {{"--quiet", "Print only errors", &o.quiet}}});
 }
@@ -180,7 +231,9 @@ Command run_command() {
   tether run face_anchor --target ssh://pi@board.local
   tether run face_anchor --profile ideal
   tether run face_anchor --simulator gazebo
-  tether run face_anchor --images --out out/one)",
+  tether run face_anchor --images --out out/one
+  tether run -- ./my_program --its options
+  tether run --world room --cpu-factor 8 -- python3 my_program.py)",
                       run_one);
 }
 

@@ -9,9 +9,11 @@
 #include "shared/manual.h"
 #include "terminal/print.h"
 
+#include <algorithm>
 #include <functional>
 #include <stop_token>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -72,6 +74,38 @@ std::string advice_on(const std::string& word) {
   return scenario::ShippedFiles::of_program(os::own_file()).what_is(word);
 }
 
+/// Takes the words after "--" off the command line of a command that has a place for them.
+struct AfterDashes {
+  std::vector<std::string>* to = nullptr;
+  bool has_dashes = false;
+
+  AfterDashes(const Command& command, std::vector<std::string>& words) {
+    for (const Option& row : command.options)
+      if (row.allowed.follows_dashes) to = std::get<std::vector<std::string>*>(row.destination);
+    const auto dashes = std::ranges::find(words, "--");
+    if (to == nullptr || words.empty() || words.front() != command.words || dashes == words.end())
+      return;
+    has_dashes = true;
+    to->assign(dashes + 1, words.end());
+    words.erase(dashes, words.end());
+  }
+  /// The words take the place of the command's first argument.
+  void require_one(const CLI::App& command) const {
+    if (to == nullptr) return;
+    const CLI::Option* first = nullptr;
+    for (const CLI::Option* option : command.get_options())
+      if (option->get_positional() && first == nullptr) first = option;
+    if (!has_dashes && first->empty()) throw CLI::RequiredError(first->get_name());
+    if (has_dashes && to->empty())
+      throw CLI::ValidationError("nothing follows '--', where a program has to be",
+                                 CLI::ExitCodes::ValidationError);
+    if (has_dashes && !first->empty())
+      throw CLI::ValidationError("'" + first->as<std::string>() + "' is before '--', which takes " +
+                                     "the place of a " + first->get_name() + "; remove one of them",
+                                 CLI::ExitCodes::ValidationError);
+  }
+};
+
 /// The file of --junit also of a command line that cannot be parsed; empty: there is none.
 std::string junit_in(const std::vector<std::string>& words) {
   constexpr std::string_view kOption = "--junit", kWithValue = "--junit=";
@@ -92,12 +126,17 @@ int run_command_line(int argc, char** argv, std::optional<os::Interrupt>& interr
   program.require_subcommand(1);
   program.formatter(help_format(os::text_columns(STDOUT_FILENO)));  // of the commands too
 
+  std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
   std::function<int(const std::stop_token&)> action;
   for (const Command& command : commands()) {
     CLI::App* added =
         add_command(program, command.words, command.help, command.options, command.footer);
+    const AfterDashes after(command, words);
     if (command.run)
-      added->callback([&action, run = command.run] { action = run; });
+      added->callback([&action, run = command.run, after, added] {
+        after.require_one(*added);
+        action = run;
+      });
     else
       added->require_subcommand(1);
   }
@@ -108,18 +147,18 @@ int run_command_line(int argc, char** argv, std::optional<os::Interrupt>& interr
       return 0;
     };
   });
-  if (const auto page = asked_manual_page(program, {argv + 1, argv + argc})) {
+  if (const auto page = asked_manual_page(program, words)) {
     fmt::print("{}", *page);
     return 0;
   }
   try {
-    program.parse(argc, argv);
+    program.parse(std::vector<std::string>(words.rbegin(), words.rend()));
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return program.exit(e);  // --help, --version
     const std::string why = complaint(program, e, advice_on);
     complain("tether: " + why);
     try {
-      (void)with_junit(junit_in({argv + 1, argv + argc}), "tether",
+      (void)with_junit(junit_in(words), "tether",
                        [&]() -> int { throw Error(ErrorCode::kUsage, why); });
     } catch (const Error&) {  // is that one, or the file cannot be written
     }

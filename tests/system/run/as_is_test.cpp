@@ -126,6 +126,37 @@ TEST_F(AsIs, TheExitCodeDecides) {
   EXPECT_EQ(result()["suts"][0]["outcome"], "the program ended with exit code 5");
 }
 
+// From a command line alone: the scenario is made, and is one like any other.
+TEST_F(AsIs, FliesWithoutAScenarioFile) {
+  write_text(folder_ / "fly.py",
+             "import socket, time\n"
+             "s = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)\n"
+             "s.bind(('', 14540))\n"
+             "s.sendto(b'x', s.recvfrom(1000)[1])\n"
+             "time.sleep(2)\n");
+  const auto fly_here = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), "run");
+    Command command = tether(words);
+    command.working_folder = folder_.path();
+    return run(command);
+  };
+  const Output first = fly_here({"--", "python3", "fly.py"});
+  EXPECT_EQ(first.code, 0) << first.err;
+  const std::string file = "out/fly/scenario.toml";
+  EXPECT_NE(first.out.find("to change and to fly again: " + file), std::string::npos) << first.out;
+  EXPECT_NE(first.out.find(file + " --condition host"), std::string::npos) << first.out;
+
+  EXPECT_EQ(fly_here({file, "--quiet", "--condition", "target"}).code, 0);
+  EXPECT_EQ(fly_here({"--quiet", "--time-limit", "1", "--cpu-factor", "2", "--out", "late", "--",
+                      "python3", "fly.py"})
+                .code,
+            1);
+  EXPECT_EQ(read_result(folder_ / "late")["condition"], "target");
+  EXPECT_EQ(read_result(folder_ / "late")["cpu_factor"], 2.0);
+  EXPECT_EQ(fly_here({"--out", "late", "--", "python3", "fly.py"}).code, 2);  // there is a run
+  EXPECT_NE(read_text(folder_ / "late/scenario.toml").find("max_s = 1\n"), std::string::npos);
+}
+
 TEST_F(AsIs, AProgramThatCrashesIsNamedAndNothingHangs) {
   const Output output =
       fly_python("import os, signal, time\ntime.sleep(1)\nos.kill(os.getpid(), signal.SIGSEGV)\n");

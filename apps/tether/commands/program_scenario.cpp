@@ -1,0 +1,254 @@
+#include "commands/program_scenario.h"
+
+#include "options/refuse_option.h"
+
+#include <algorithm>
+#include <sstream>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include <tether/os/shell_word.h>
+#include <tether/os/text_file.h>
+#include <tether/runner/trial_folder.h>
+#include <tether/scenario/scenario.h>
+#include <tether/toml/number_text.h>
+
+namespace tether::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+using scenario::ShippedKind;
+
+constexpr const char* kWorld = "yard";
+constexpr const char* kModel = "hummingbird";
+constexpr const char* kProfile = "paper_streaming";
+constexpr double kTimeLimit_s = 120.0;
+constexpr double kCpuFactor = 6.0;
+
+Allowed usually(Allowed allowed, std::string usual) {
+  allowed.usual = std::move(usual);
+  return allowed;
+}
+
+/// A string of TOML, whose escapes are those of JSON.
+std::string toml_text(const std::string& text) try {
+  return nlohmann::json(text).dump();
+} catch (const nlohmann::json::exception&) {
+  refuse_option("--", fmt::format("'{}' is not UTF-8, as the text of a scenario has to be", text));
+}
+
+std::string toml_list(const std::vector<std::string>& texts) {
+  std::vector<std::string> quoted(texts.size());
+  std::ranges::transform(texts, quoted.begin(), toml_text);
+  return fmt::format("[{}]", fmt::join(quoted, ", "));
+}
+
+/// A path of the command line is not that of a file elsewhere.
+std::string file_text(const scenario::ShippedFiles& shipped, ShippedKind kind,
+                      const std::string& option, const std::string& given) try {
+  return toml_text(shipped.named(kind, given, {}) ? given : fs::absolute(given).string());
+} catch (const Error& error) {
+  refuse_option(option, error.what());
+}
+
+bool is_file(const std::string& word) {
+  std::error_code ignored;
+  return fs::is_regular_file(word, ignored);
+}
+
+/// A script's name rather than that of an interpreter in PATH.
+std::string script_name(const std::vector<std::string>& command) {
+  constexpr std::size_t kMost = 64;
+  const auto file = std::ranges::find_if(command, is_file);
+  std::string name = fs::path(file == command.end() ? command.front() : *file).stem();
+  for (char& c : name)
+    if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-' && c != '.') c = '_';
+  if (name.empty() || name.front() == '.') name.insert(0, "program");
+  return name.substr(0, kMost);
+}
+
+/// What a place of the template gets, in TOML, and the option that decides it: "--world yard", or
+/// empty for the program itself.
+struct Value {
+  std::string text;
+  std::string option{};
+};
+using Values = std::map<std::string, Value, std::less<>>;
+
+Value file_value(const scenario::ShippedFiles& shipped, ShippedKind kind, const std::string& option,
+                 const std::string& given) {
+  return {file_text(shipped, kind, option, given), option + " " + given};
+}
+
+Value number_value(const std::string& option, double number) {
+  return {toml::number_text(number), option + " " + toml::number_text(number)};
+}
+
+Values values_of(const ProgramOptions& options, const std::string& profile,
+                 const scenario::ShippedFiles& shipped) {
+  std::vector<std::string> command = options.command;
+  if (command.front().find('/') != std::string::npos)
+    command.front() = fs::absolute(command.front()).lexically_normal();
+  const std::string controller =
+      options.flight_controller.value_or(options.px4            ? "px4"
+                                         : options.uses_library ? "none"
+                                                                : "built-in");
+  const double limit_s = options.time_limit_s.value_or(kTimeLimit_s);
+  const std::string place = fmt::format(
+      "[{}]", fmt::join(options.position_m.value_or(std::vector<double>{0.0, 0.0, 0.1}), ", "));
+  Values values = {
+      {"name", {toml_text(script_name(options.command))}},
+      {"world",
+       file_value(shipped, ShippedKind::kWorld, "--world", options.world.value_or(kWorld))},
+      {"model",
+       file_value(shipped, ShippedKind::kModel, "--model", options.model.value_or(kModel))},
+      {"profile", file_value(shipped, ShippedKind::kProfile, "--profile",
+                             profile.empty() ? kProfile : profile)},
+      {"time_limit", number_value("--time-limit", limit_s)},
+      {"end", {toml::number_text(limit_s + 1.0), number_value("--time-limit", limit_s).option}},
+      {"position", {place, "--position " + place}},
+      {"flight_controller", {toml_text(controller), "--flight-controller " + controller}},
+      {"command", {toml_list(command)}},
+      {"as_is", {options.uses_library ? "false" : "true"}},
+      {"cpu_factor", number_value("--cpu-factor", options.cpu_factor.value_or(kCpuFactor))}};
+  if (!options.anchors.empty())
+    values["anchors"] = {toml_list(options.anchors), "--anchor " + options.anchors.front()};
+  if (options.px4) values["px4"] = {toml_text(fs::absolute(*options.px4)), "--px4 " + *options.px4};
+  if (options.starts_in_air) values["starts_in_air"] = {"true", "--starts-in-air"};
+  return values;
+}
+
+/// The place of a line such as "world = {world}"; empty: it has none.
+std::string place_in(const std::string& line) {
+  const std::size_t begin = line.find(" = {");
+  return begin == std::string::npos ? "" : line.substr(begin + 4, line.find('}') - begin - 4);
+}
+
+}  // namespace
+
+Options program_rows(ProgramOptions& o) {
+  return {
+      {"program",
+       "After --, in place of a scenario: a program that knows nothing of Tether, and its "
+       "arguments. It flies unchanged, and its exit code says whether it reached its goal. The "
+       "scenario is made of the following options, and written as scenario.toml into --out",
+       &o.command,
+       {.follows_dashes = true}},
+      {"--world WORLD", "For a program: name of a shipped world, or a file (SDF)", &o.world,
+       usually({}, kWorld)},
+      {"--model MODEL", "For a program: name of a shipped UAV, or a file (SDF)", &o.model,
+       usually({}, kModel)},
+      {"--position X,Y,Z",
+       "For a program: where the UAV starts, in metres",
+       &o.position_m,
+       {.has_commas = true, .count = 3, .usual = "0,0,0.1"}},
+      {"--flight-controller", "For a program: what flies the UAV at its commands",
+       &o.flight_controller, usually(one_of({"built-in", "px4", "none"}), "built-in")},
+      {"--px4 FOLDER", "For a program: your build of PX4, which is then the flight controller",
+       &o.px4},
+      {"--starts-in-air",
+       "For a program: it finds the UAV in flight, armed. Only with the built-in flight controller",
+       &o.starts_in_air},
+      {"--time-limit", "For a program: simulated time in seconds within which it has to end",
+       &o.time_limit_s,
+       usually(range(0.1, scenario::kLongestRun_s - 1.0), toml::number_text(kTimeLimit_s))},
+      {"--anchor NAME",
+       "For a program: a model of the world whose true place the record has; can be repeated",
+       &o.anchors,
+       {.is_one_each = true}},
+      {"--cpu-factor",
+       "For a program: fly the condition \"target\" of the scenario, this machine so many times "
+       "slower [fly \"host\", this machine as it is]",
+       &o.cpu_factor, range(1e-3, 1e4)},
+      {"--uses-library",
+       "For a program: it uses Tether's library. Without --flight-controller, it commands the UAV "
+       "itself",
+       &o.uses_library}};
+}
+
+void require_no_program_options(const ProgramOptions& o) {
+  const std::pair<const char*, bool> given[] = {
+      {"--world", o.world.has_value()},
+      {"--model", o.model.has_value()},
+      {"--position", o.position_m.has_value()},
+      {"--flight-controller", o.flight_controller.has_value()},
+      {"--px4", o.px4.has_value()},
+      {"--starts-in-air", o.starts_in_air},
+      {"--time-limit", o.time_limit_s.has_value()},
+      {"--anchor", !o.anchors.empty()},
+      {"--cpu-factor", o.cpu_factor.has_value()},
+      {"--uses-library", o.uses_library}};
+  for (const auto& [option, is_given] : given)
+    if (is_given)
+      refuse_option(option,
+                    "is for a program that follows '--'. Change values of a scenario's file with "
+                    "--set KEY=VALUE");
+}
+
+ProgramScenario make_program_scenario(const ProgramOptions& options, const std::string& profile,
+                                      const scenario::ShippedFiles& shipped) {
+  const Values values = values_of(options, profile, shipped);
+  ProgramScenario made{.name = script_name(options.command),
+                       .text = std::string(runner::kMadeScenario) +
+                               ", which replaces this file as long as\n# it begins with this line. "
+                               "Remove the line to make the file your own.\n",
+                       .options = {}};
+  std::istringstream lines(os::read_file(shipped.folder() / "templates/program.toml"));
+  int number = 2;
+  for (std::string line; std::getline(lines, line);) {
+    const std::string place = place_in(line);
+    const auto value = values.find(place);
+    if (!place.empty() && value == values.end()) continue;  // left out: nobody decides it
+    ++number;
+    if (!place.empty()) {
+      line.replace(line.find('{'), place.size() + 2, value->second.text);
+      made.options[number] = value->second.option;
+    }
+    // What its table lacks is told at the header.
+    if (place == "flight_controller") made.options[number - 1] = value->second.option;
+    made.text += line + "\n";
+  }
+  return made;
+}
+
+Error about_option(const Error& error, const fs::path& file, const ProgramScenario& made) {
+  if (error.where().file != file.string()) return error;
+  const std::string what = std::string(error.what()).substr(located(error.where(), "").size());
+  const auto told = [&](const std::string& message) {
+    return Error(ErrorCode::kUsage, message).about(error.subject());
+  };
+  if (error.where().line == 0) return told(fmt::format("the scenario of {} {}", made.name, what));
+  const auto option = made.options.find(error.where().line);
+  if (option == made.options.end()) return error;
+  return told(option->second.empty() ? what : option->second + ": " + what);
+}
+
+ProgramScenarioFile::ProgramScenarioFile(const fs::path& folder, const ProgramScenario& made)
+    : path_(fs::absolute(folder / runner::kMadeScenarioFile)) {
+  const std::string begin = os::begin_of(path_, runner::kMadeScenario.size());
+  if (fs::exists(path_) && begin != runner::kMadeScenario)
+    throw Error(ErrorCode::kUsage, {path_.string()},
+                fmt::format("is not replaced, because it is not as this command makes it. To fly "
+                            "it, type: tether run {}. Or choose another folder with --out",
+                            os::shell_word(path_.string())))
+        .about(path_.string());
+  for (fs::path one = path_; !fs::exists(one); one = one.parent_path()) new_.push_back(one);
+  std::error_code failed;
+  fs::create_directories(path_.parent_path(), failed);
+  if (failed)
+    throw Error(ErrorCode::kSetup, {path_.parent_path().string()}, failed.message())
+        .about(path_.parent_path().string());
+  os::write_file_atomically(path_, made.text);
+}
+
+ProgramScenarioFile::~ProgramScenarioFile() {
+  std::error_code ignored;  // what has other files stays
+  for (const fs::path& one : new_) fs::remove(one, ignored);
+}
+
+}  // namespace tether::app
