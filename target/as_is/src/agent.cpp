@@ -53,6 +53,10 @@ int wake_of_thread() {
   return kDescriptor.fd;
 }
 
+std::optional<ExecTime> earlier_of(std::optional<ExecTime> a, std::optional<ExecTime> b) {
+  return a && b ? std::min(a, b) : a ? a : b;
+}
+
 /// The program's own name: the last part of its path.
 std::string program_name() {
   char path[4096];
@@ -157,11 +161,13 @@ void Agent::drop(const std::string& sensor, bool keeps_later_ones) {
 
 void Agent::forget(int fd) {
   port_.forget(fd);
+  timers_.forget(fd);
   if (is_camera(fd)) with_cameras([fd](CameraFiles& cameras) { cameras.forget(fd); });
 }
 
 void Agent::copy(int fd, int copy) {
   port_.copy(fd, copy);
+  timers_.copy(fd, copy);
   if (is_camera(fd)) with_cameras([=](CameraFiles& cameras) { cameras.copy(fd, copy); });
 }
 
@@ -207,7 +213,8 @@ Duration Agent::slice(std::optional<ExecTime> deadline, Patience& patience) cons
 bool Agent::lead() {
   const std::unique_lock leading(leading_, std::try_to_lock);
   if (!leading || !threads_.are_others_waiting()) return false;
-  std::optional<ExecTime> earliest;
+  if (fire_timers()) return true;
+  std::optional<ExecTime> earliest = timers_.next();
   bool is_empty = true;
   {
     const std::lock_guard lock(waits_mutex_);
@@ -217,6 +224,7 @@ bool Agent::lead() {
   }
   if (is_empty || (earliest && *earliest <= now())) return false;
   receive_until(earliest);
+  fire_timers();
   wake_due();
   return true;
 }
@@ -252,12 +260,14 @@ bool Agent::wait(std::optional<ExecTime> deadline, const std::function<bool()>& 
   ExecTime heard_at = patience.seen;
   bool ready = false;
   bool leads = true;
-  while (!(ready = is_ready()) && !(deadline && now() >= *deadline)) {
+  for (;;) {
+    fire_timers();
+    if ((ready = is_ready()) || (deadline && now() >= *deadline)) break;
     Unpaid::settle();
     if (leads && lead()) continue;
     if (leads && !is_alone) call_leader();
     leads = is_alone;
-    block(slice(deadline, patience), own->wake);
+    block(slice(earlier_of(deadline, timers_.next()), patience), own->wake);
     if (hears && is_fed() && now() - heard_at >= kBetweenLooks) {
       take_arrived();
       heard_at = now();

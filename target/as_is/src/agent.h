@@ -4,6 +4,7 @@
 #include "port.h"
 #include "serial.h"
 #include "threads.h"
+#include "timers.h"
 #include "unpaid.h"
 
 #include <atomic>
@@ -30,7 +31,8 @@ namespace tether::as_is {
 /// coordinator for what comes first, a message of the flight controller or the earliest deadline,
 /// and ET goes on from there. A thread that waits for another one cannot lead, because it has to
 /// hear that one all the time; a thread of this library does it for them. The messages are put into
-/// the program's own sockets, so that the kernel wakes whoever waits for them.
+/// the program's own sockets, and what its timers count into its own descriptors, so that the
+/// kernel wakes whoever waits for them.
 ///
 /// Thread-safe.
 class Agent {
@@ -82,6 +84,10 @@ class Agent {
   /// Whether something can arrive for the program.
   bool is_fed() const { return port_.is_any() || cameras_.is_any(); }
 
+  Timers& timers() { return timers_; }
+  /// Those of the timers that are due up to now. False: none is.
+  bool fire_timers() { return timers_.next() && timers_.fire(now()); }
+
   /// A descriptor is closed, or there is another one of the same.
   void forget(int fd);
   void copy(int fd, int copy);
@@ -125,6 +131,7 @@ class Agent {
   bool is_known_to_be_used_ = false;
   Port port_;
   CameraFiles cameras_;  // with leading_
+  Timers timers_;
   std::mutex stream_mutex_;
   FrameStream stream_;
   Threads threads_;

@@ -30,6 +30,7 @@ template <class Look>
 int wait_for(Agent& agent, std::optional<Duration> timeout, Look look, const Agent::Block& block) {
   const int kept = errno;
   const Inside inside;
+  agent.fire_timers();
   int result = look();
   if (result == 0 && timeout == Duration(0)) {
     if (agent.is_fed()) agent.take_arrived();

@@ -48,12 +48,13 @@ template <class Take>
 ssize_t read_when_ready(Agent& agent, int socket, int flags, Take take) {
   const int kept = errno;
   const Inside inside;
+  agent.fire_timers();
   ssize_t result = take();
   const auto is_empty = [&] { return result < 0 && (errno == EAGAIN || errno == EWOULDBLOCK); };
   if (!is_empty()) return result;
   const auto timeout = timeout_of(socket, flags);
   if (timeout == Duration(0)) {
-    agent.take_arrived();
+    if (agent.is_fed()) agent.take_arrived();
     return take();
   }
   bool is_timed_out = true;
@@ -219,6 +220,8 @@ TETHER_IN_PLACE ssize_t read(int fd, void* bytes, size_t size) {
     errno = EINVAL;  // images are in buffers
     return -1;
   }
+  if (Agent* const any = tether::as_is::agent(); any && any->timers().is_ours(fd))
+    return read_when_ready(*any, fd, 0, [&] { return any->timers().take(fd, bytes, size); });
   Agent* const agent = agent_of(fd);
   if (agent == nullptr) return call_outside(fd, [&] { return TETHER_REAL(read)(fd, bytes, size); });
   if (agent->port().is_serial(fd)) return read_serial(*agent, fd, bytes, size);

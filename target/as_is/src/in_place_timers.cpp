@@ -1,7 +1,10 @@
-// Timers that the kernel keeps, which are not brought to ET: the real ones, told once.
+// Timers in place of the C library's. Those that are descriptors are at ET; those that send signals
+// are the real ones, told once.
 
+#include "clocks.h"
 #include "in_place.h"
 
+#include <cerrno>
 #include <csignal>
 #include <ctime>
 
@@ -19,14 +22,42 @@ void tell(const char* what) {
   agent->tell_gap(what);
 }
 
+/// The agent, if the timer is one of its own.
+Agent* agent_of_timer(int fd) {
+  Agent* const agent = tether::as_is::agent();
+  return agent != nullptr && agent->timers().is_ours(fd) ? agent : nullptr;
+}
+
 }  // namespace
 }  // namespace tether::as_is
 
-using tether::as_is::tell;
+using namespace tether::as_is;
 
 TETHER_IN_PLACE int timerfd_create(clockid_t clock, int flags) {
-  tell("timerfd_create");
-  return TETHER_REAL(timerfd_create)(clock, flags);
+  Agent* const agent = tether::as_is::agent();
+  if (agent == nullptr || !is_ours(clock)) {
+    tell("timerfd_create");
+    return TETHER_REAL(timerfd_create)(clock, flags);
+  }
+  const Inside inside;
+  return agent->timers().create(clock, flags);
+}
+
+TETHER_IN_PLACE int timerfd_settime(int fd, int flags, const itimerspec* value, itimerspec* old) {
+  Agent* const agent = agent_of_timer(fd);
+  if (agent == nullptr) return TETHER_REAL(timerfd_settime)(fd, flags, value, old);
+  const int kept = errno;
+  const Inside inside;
+  const int result = agent->timers().set(fd, flags, *value, old, agent->now());
+  if (result == 0) errno = kept;
+  return result;
+}
+
+TETHER_IN_PLACE int timerfd_gettime(int fd, itimerspec* value) {
+  Agent* const agent = agent_of_timer(fd);
+  if (agent == nullptr) return TETHER_REAL(timerfd_gettime)(fd, value);
+  const Inside inside;
+  return agent->timers().get(fd, value, agent->now());
 }
 
 TETHER_IN_PLACE int timer_create(clockid_t clock, sigevent* __restrict event,

@@ -2,6 +2,7 @@
 // long that took by MONOTONIC and REALTIME [µs].
 #include <chrono>
 #include <condition_variable>
+#include <cstdint>
 #include <cstdio>
 #include <ctime>
 #include <functional>
@@ -17,6 +18,7 @@
 #include <sys/epoll.h>
 #include <sys/select.h>
 #include <sys/socket.h>
+#include <sys/timerfd.h>
 #include <unistd.h>
 
 namespace {
@@ -117,6 +119,37 @@ int main() {
     char byte = 0;
     recv(udp, &byte, 1, 0);
   });
+  // Timers that are descriptors: once, and at each of four periods of 5 ms.
+  std::uint64_t count = 0;
+  const int timer = timerfd_create(CLOCK_MONOTONIC, 0);
+  const auto read_timer = [&] {
+    return read(timer, &count, sizeof count) == sizeof count ? count : 0;
+  };
+  const itimerspec once{{}, duration}, never{};
+  take("timerfd_read", [&] {
+    timerfd_settime(timer, 0, &once, nullptr);
+    read_timer();
+  });
+  take("timerfd_poll", [&] {
+    const itimerspec at{{}, later(CLOCK_MONOTONIC)};
+    timerfd_settime(timer, TFD_TIMER_ABSTIME, &at, nullptr);
+    pollfd fd{timer, POLLIN, 0};
+    poll(&fd, 1, -1);
+  });
+  event.events = EPOLLIN;
+  epoll_ctl(epoll, EPOLL_CTL_ADD, timer, &event);
+  const itimerspec period{{0, kWait_ns / 4}, {0, kWait_ns / 4}};
+  take("timerfd_epoll_wait", [&] {
+    timerfd_settime(timer, 0, &period, nullptr);
+    for (std::uint64_t periods = 0; periods < 4; periods += read_timer())
+      if (epoll_wait(epoll, &event, 1, 1000) != 1) break;
+  });
+  take("timerfd_counted_while_nobody_reads", [&] {
+    timerfd_settime(timer, 0, &period, nullptr);
+    usleep(kWait_ns / 1000 - 100);
+    if (read_timer() == 3) read_timer();
+  });
+  timerfd_settime(timer, 0, &never, nullptr);
   // One thread computes while another waits.
   take("beside_computing", [] {
     std::thread busy([] {
