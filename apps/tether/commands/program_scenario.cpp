@@ -195,11 +195,10 @@ ProgramScenario make_program_scenario(const ProgramOptions& options, const std::
   const Values values = values_of(options, profile, shipped);
   ProgramScenario made{.name = script_name(options.command),
                        .text = std::string(runner::kMadeScenario) +
-                               ", which replaces this file as long as\n# it begins with this line. "
-                               "Remove the line to make the file your own.\n",
+                               ". Without this line, the file is yours and is not replaced.\n",
                        .options = {}};
   std::istringstream lines(os::read_file(shipped.folder() / "templates/program.toml"));
-  int number = 2;
+  int number = 1;
   for (std::string line; std::getline(lines, line);) {
     const std::string place = place_in(line);
     const auto value = values.find(place);

@@ -27,12 +27,14 @@ TEST(Completion, OfBashIsMadeFromTheOptionsOfEachProgram) {
     const std::string name = program.filename();
     std::string function = "_" + name;
     std::ranges::replace(function, '-', '_');
-    const std::string code = "source <('" + program.string() + "' completion bash)\nCOMP_WORDS=(" +
-                             name + " " + words + ")\nCOMP_CWORD=$((${#COMP_WORDS[@]} - 1))\n" +
-                             function + "\necho \"${COMPREPLY[@]}\"";
+    const std::string code = "PATH='" + program.parent_path().string() + "':$PATH\nsource <('" +
+                             program.string() + "' completion bash)\nCOMP_WORDS=(" + name + " " +
+                             words + ")\nCOMP_CWORD=$((${#COMP_WORDS[@]} - 1))\n" + function +
+                             "\necho \"${COMPREPLY[@]}\"";
     return run({{"bash", "-c", code}}).out;
   };
   EXPECT_EQ(completed(tether_program(), "timing a --ju"), "--junit\n");
+  EXPECT_EQ(completed(tether_program(), "run --world corri"), "corridor\n");
   EXPECT_EQ(completed(tether_program(), "size a --axis ''"), "slowdown uavs\n");
   EXPECT_EQ(completed(sut_program(), "face_anchor --prec"), "--precision-deg\n");
 }
