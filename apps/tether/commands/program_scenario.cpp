@@ -61,11 +61,23 @@ bool is_file(const std::string& word) {
   return fs::is_regular_file(word, ignored);
 }
 
-/// A script's name rather than that of an interpreter in PATH.
+/// Programs that run a script; without their versions.
+bool is_interpreter(const std::string& program) {
+  constexpr std::string_view kInterpreters[] = {"python", "node", "sh",   "bash", "dash",
+                                                "ruby",   "perl", "java", "lua",  "env"};
+  const std::string name = fs::path(program).filename();
+  const std::string_view kind =
+      std::string_view(name).substr(0, name.find_last_not_of("0123456789.") + 1);
+  return std::ranges::count(kInterpreters, kind) > 0;
+}
+
+/// Of the program, or of the script that an interpreter runs.
 std::string script_name(const std::vector<std::string>& command) {
   constexpr std::size_t kMost = 64;
-  const auto file = std::ranges::find_if(command, is_file);
-  std::string name = fs::path(file == command.end() ? command.front() : *file).stem();
+  const auto script = is_interpreter(command.front())
+                          ? std::find_if(command.begin() + 1, command.end(), is_file)
+                          : command.end();
+  std::string name = fs::path(script == command.end() ? command.front() : *script).stem();
   for (char& c : name)
     if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-' && c != '.') c = '_';
   if (name.empty() || name.front() == '.') name.insert(0, "program");

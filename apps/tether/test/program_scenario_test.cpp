@@ -105,7 +105,9 @@ TEST_F(ProgramScenarioTest, IsNamedAfterTheScriptOrTheProgram) {
   const std::string script = scratch_.write("my flight.py", "");
   const std::pair<std::vector<std::string>, std::string> cases[] = {
       {{"python3", script, "--fast"}, "my_flight"},
-      {{script, script + "x"}, "my_flight"},
+      {{"/usr/bin/python3.11", "-u", script}, "my_flight"},
+      {{script, "plan.txt"}, "my_flight"},
+      {{"companion", script}, "companion"},
       {{"python3", "-m", "package.module"}, "python3"},
       {{"/nowhere/companion.bin"}, "companion"},
       {{"./.hidden"}, "program.hidden"},
