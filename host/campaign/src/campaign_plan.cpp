@@ -98,8 +98,7 @@ int parallel_trials(const TrialPlan& plan, int jobs) {
     const scenario::Computer& own = computer_of(condition, uav);
     const bool is_bound = own.target && own.target->cores > 0;
     const auto& controller = plan.scenario->uavs[uav].flight_controller;
-    // Of PX4, each instance has the same ports in each trial.
-    const bool has_ports = controller && controller->kind == scenario::FlightController::Kind::kPx4;
+    const bool has_ports = controller && controller->has_fixed_ports;
     if (own.clock.counts_waiting() || is_bound || has_ports) return 1;
     load_of_suts += 1.0 / own.clock.factor + kSimulatorLoad * condition.real_time_factor;
   }

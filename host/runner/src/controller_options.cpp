@@ -1,10 +1,13 @@
 #include "controller_options.h"
 
 #include <algorithm>
+#include <string>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include <tether/autopilot/built_in.h>
-#include <tether/autopilot/px4.h>
+#include <tether/autopilot/external.h>
 #include <tether/base/error.h>
 
 namespace tether::runner {
@@ -16,8 +19,9 @@ std::uint8_t system_id(std::size_t uav) {
   return static_cast<std::uint8_t>(1 + uav % 250);
 }
 
-ControllerOptions built_in(const scenario::FlightController& controller, const sim::World& world,
-                           std::size_t uav) {
+ControllerOptions built_in(const scenario::FlightController& controller,
+                           const sim::Simulator& simulator, std::size_t uav) {
+  const sim::World& world = simulator.world();
   const sim::Uav& own = world.uavs[uav];
   const auto estimator =
       std::ranges::find(own.sensors, uav::SensorKind::kOdometry, &sim::Sensor::kind);
@@ -31,31 +35,45 @@ ControllerOptions built_in(const scenario::FlightController& controller, const s
   return {.name = "built-in",
           .estimate = estimator == own.sensors.end() ? "truth" : estimator->name,
           .make = [settings] { return make_built_in(settings); },
-          .period = autopilot::kBuiltInPeriod};
+          .period = simulator.grid().ceil(SimTime(autopilot::kBuiltInPeriod)).time_since_epoch()};
 }
 
-ControllerOptions px4(const scenario::FlightController& controller, const sim::World& world,
-                      std::size_t uav, std::uint64_t seed, const std::filesystem::path& folder) {
-  if (uav >= autopilot::kMostPx4)
-    throw Error(ErrorCode::kBadFile, controller.at,
-                "PX4's ports are for ten UAVs at most. Give the others another flight controller.")
-        .about("flight_controller");
-  const autopilot::Px4Settings settings{
+ControllerOptions external(const scenario::FlightController& controller,
+                           const sim::Simulator& simulator, std::size_t uav, std::uint64_t seed,
+                           const std::filesystem::path& folder) {
+  const autopilot::External& kind = *controller.external;
+  const sim::World& world = simulator.world();
+  const sim::Uav& own = world.uavs[uav];
+  const auto refuse = [&](const std::string& why) {
+    throw Error(ErrorCode::kBadFile, controller.at, why).about("flight_controller");
+  };
+  if (uav >= kind.most_uavs)
+    refuse(
+        fmt::format("{} can fly the first {} UAVs only. Give the others another flight "
+                    "controller.",
+                    kind.name, kind.most_uavs));
+  if (std::ranges::find(own.sensors, uav::SensorKind::kImu, &sim::Sensor::kind) ==
+      own.sensors.end())
+    refuse(fmt::format("{} needs an IMU, and the UAV '{}' has none. Add one to its model.",
+                       kind.name, own.name));
+  const Duration period = simulator.grid().ceil(SimTime(kind.period)).time_since_epoch();
+  const autopilot::ExternalSettings settings{
       .build = controller.path,
-      .folder = std::filesystem::absolute(folder / (world.uavs[uav].name + ".px4")),
+      .folder = std::filesystem::absolute(folder / fmt::format("{}.{}", own.name, kind.key)),
       .instance = static_cast<int>(uav),
       .seed = seed,
+      .period = period,
       .place = world.place.value_or(sim::Place{}),
       .magnetic_field_T = world.magnetic_field_T,
       .gravity_m_s2 = world.gravity_m_s2,
-      .vehicle = world.uavs[uav],
+      .vehicle = own,
       .parameters = controller.parameters,
       .boot = controller.boot};
-  return {.name = "PX4",
+  return {.name = std::string(kind.name),
           .estimate = "its sensors",
-          .make = [settings] { return start_px4(settings); },
-          .period = autopilot::kPx4Period,
-          .repeats = false};
+          .make = [start = kind.start, settings] { return start(settings); },
+          .period = period,
+          .repeats = kind.repeats};
 }
 
 }  // namespace
@@ -68,11 +86,9 @@ ControllerOptions controller_options(const scenario::FlightController& controlle
                 "'flight_controller' needs a simulator that follows any set-point. Use the "
                 "embedded one (simulator = \"mujoco\").")
         .about("flight_controller");
-  using Kind = scenario::FlightController::Kind;
-  ControllerOptions options = controller.kind == Kind::kPx4
-                                  ? px4(controller, simulator.world(), uav, seed, folder)
-                                  : built_in(controller, simulator.world(), uav);
-  options.period = simulator.grid().ceil(SimTime(options.period)).time_since_epoch();
+  ControllerOptions options = controller.external != nullptr
+                                  ? external(controller, simulator, uav, seed, folder)
+                                  : built_in(controller, simulator, uav);
   options.link_baud = controller.link_baud;
   options.link_latency = controller.link_latency;
   return options;

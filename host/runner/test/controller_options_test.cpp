@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <tether/autopilot/built_in.h>
+#include <tether/autopilot/external.h>
 #include <tether/base_testing/thrown_error.h>
 #include <tether/sim_testing/fake_simulator.h>
 
@@ -70,14 +71,38 @@ TEST(ControllerOptions, FliesOnAnOdometry) {
   EXPECT_EQ(controller_options({}, sim::FakeSimulator(world), 0, 1, {}).estimate, "odometry");
 }
 
+void expect_refused(const scenario::FlightController& controller, const sim::Simulator& simulator,
+                    std::size_t uav, const std::string& reason) {
+  const Error error =
+      bad_file_error([&] { controller_options(controller, simulator, uav, 1, {}); });
+  EXPECT_EQ(error.where().line, 12);
+  EXPECT_EQ(error.subject(), "flight_controller");
+  EXPECT_THAT(std::string(error.what()), testing::HasSubstr(reason));
+}
+
 TEST(ControllerOptions, IsRefusedWhereTheScenarioHasIt) {
   scenario::FlightController controller;
   controller.at = {"s.toml", 12};
-  const Error error =
-      bad_file_error([&] { controller_options(controller, WithoutSetpoints(), 0, 1, {}); });
-  EXPECT_EQ(error.where().line, 12);
-  EXPECT_EQ(error.subject(), "flight_controller");
-  EXPECT_THAT(std::string(error.what()), testing::HasSubstr("embedded one"));
+  expect_refused(controller, WithoutSetpoints(), 0, "embedded one");
+  controller.external = &autopilot::externals()[0];
+  const sim::FakeSimulator simulator(sim::make_fake_world(11));
+  expect_refused(controller, simulator, 10, "PX4 can fly the first 10 UAVs only");
+  sim::World world = sim::make_fake_world(1);
+  world.uavs[0].sensors.clear();
+  expect_refused(controller, sim::FakeSimulator(world), 0, "PX4 needs an IMU");
+}
+
+TEST(ControllerOptions, DescribesOneThatTheUserBrings) {
+  const sim::FakeSimulator simulator(sim::make_fake_world(1, std::chrono::microseconds(3'000)));
+  for (const autopilot::External& kind : autopilot::externals()) {
+    scenario::FlightController controller;
+    controller.external = &kind;
+    const auto options = controller_options(controller, simulator, 0, 1, {});
+    EXPECT_EQ(options.name, kind.name);
+    EXPECT_EQ(options.estimate, "its sensors");
+    EXPECT_EQ(options.repeats, kind.repeats);
+    EXPECT_EQ(options.period, std::chrono::milliseconds(kind.key == "px4" ? 6 : 3));
+  }
 }
 
 }  // namespace

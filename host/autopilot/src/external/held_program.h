@@ -23,6 +23,8 @@ class HeldProgram {
   void let_rest(const std::function<void()>& send, const std::function<void()>& serve);
   /// @throws Error(kLinkLost) as above
   void require_alive();
+  /// Where its output goes.
+  const std::filesystem::path& log() const { return log_; }
 
  private:
   std::string name_;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <tether/base/random.h>
 #include <tether/base/units.h>
 #include <tether/mavlink/frames.h>
 #include <tether/sim/geodesy.h>
@@ -23,40 +22,6 @@ std::int64_t to_us(Duration d) {
 }
 
 }  // namespace
-
-Readings ideal_readings(const uav::BodyState& truth, const uav::Vec3& specific_force_B_m_s2,
-                        const sim::Place& place, const uav::Vec3& magnetic_field_W_T) {
-  const sim::Geodetic at = sim::geodetic_of(place, truth.p_WB);
-  constexpr double kAccuracy_m = 0.5, kAccuracy_m_s = 0.1;
-  return {.specific_force_B_m_s2 = specific_force_B_m_s2,
-          .w_WB_B_rad_s = truth.w_WB_B,
-          .field_B_T = rotate(inverse(truth.q_WB), magnetic_field_W_T),
-          .pressure_Pa = sim::standard_pressure_pa(at.altitude_m),
-          .position = {.sampled_at = {},
-                       .has_fix = true,
-                       .latitude_deg = at.latitude_deg,
-                       .longitude_deg = at.longitude_deg,
-                       .altitude_m = at.altitude_m,
-                       .velocity_ENU_m_s = sim::to_enu(place, truth.v_WB),
-                       .horizontal_accuracy_m = kAccuracy_m,
-                       .vertical_accuracy_m = kAccuracy_m,
-                       .speed_accuracy_m_s = kAccuracy_m_s}};
-}
-
-Readings with_noise(Readings readings, std::uint64_t seed, std::uint64_t step) {
-  constexpr double kForce_m_s2 = 0.03, kRate_rad_s = 0.002, kField_T = 1e-7, kPressure_Pa = 0.6;
-  KeyedRandom random({seed, random_stream("controller", "", "own noise"), step});
-  const auto add = [&](uav::Vec3& v, double stddev) {
-    v.x += stddev * random.normal();
-    v.y += stddev * random.normal();
-    v.z += stddev * random.normal();
-  };
-  add(readings.specific_force_B_m_s2, kForce_m_s2);
-  add(readings.w_WB_B_rad_s, kRate_rad_s);
-  add(readings.field_B_T, kField_T);
-  readings.pressure_Pa += kPressure_Pa * random.normal();
-  return readings;
-}
 
 mavlink::Message hil_sensor(Duration at, const Readings& readings) {
   constexpr double kTemperature_degC = 25.0;
@@ -97,14 +62,13 @@ mavlink::Message hil_gps(Duration at, const uav::NavSatSample& position) {
   return m;
 }
 
-std::vector<double> rotor_speeds_rad_s(const mavlink::Message& controls, std::size_t rotors,
-                                       double max_rad_s) {
-  std::vector<double> speeds;
+std::vector<double> rotor_shares(const mavlink::Message& controls, std::size_t rotors) {
+  std::vector<double> shares;
   for (std::size_t i = 0; i < rotors; ++i) {
     const double share = controls.number("controls", i);
-    speeds.push_back(std::isfinite(share) ? max_rad_s * std::clamp(share, 0.0, 1.0) : 0.0);
+    shares.push_back(std::isfinite(share) ? std::clamp(share, 0.0, 1.0) : 0.0);
   }
-  return speeds;
+  return shares;
 }
 
 }  // namespace tether::autopilot

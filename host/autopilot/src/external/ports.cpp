@@ -27,16 +27,16 @@ sockaddr_in local(std::uint16_t port) {
 }
 
 /// @throws Error(kSetup) if the port is in use
-os::FileDescriptor bound(int type, std::uint16_t port) {
+os::FileDescriptor bound(int type, std::uint16_t port, std::string_view user) {
   os::FileDescriptor socket(::socket(AF_INET, type | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   // Of TCP: connections of an earlier run that wait for their end are no reason.
   if (type == SOCK_STREAM) ::setsockopt(socket.get(), SOL_SOCKET, SO_REUSEADDR, &kOn, sizeof kOn);
   const sockaddr_in address = local(port);
   if (::bind(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
     throw Error(ErrorCode::kSetup,
-                fmt::format("cannot use {} port {}, which PX4 needs: {}. End what uses it, such as "
+                fmt::format("cannot use {} port {}, which {} needs: {}. End what uses it, such as "
                             "another simulation",
-                            type == SOCK_STREAM ? "TCP" : "UDP", port, reason_of(errno)));
+                            type == SOCK_STREAM ? "TCP" : "UDP", port, user, reason_of(errno)));
   return socket;
 }
 
@@ -49,21 +49,47 @@ void wait_for(const os::FileDescriptor& socket, Duration limit) {
 
 }  // namespace
 
-Ports::Ports(int instance) {
-  for (std::uint16_t* number :
-       {&numbers_.simulator, &numbers_.companion, &numbers_.controller, &numbers_.ground})
-    *number = static_cast<std::uint16_t>(*number + instance);
-  listener_ = bound(SOCK_STREAM, numbers_.simulator);
-  datagrams_ = bound(SOCK_DGRAM, numbers_.companion);
-  // PX4 binds these itself.
-  (void)bound(SOCK_DGRAM, numbers_.controller);
-  (void)bound(SOCK_DGRAM, numbers_.ground);
-  if (::listen(listener_.get(), 1) != 0)
-    throw Error(ErrorCode::kSetup, fmt::format("cannot wait for PX4 at TCP port {}: {}",
-                                               numbers_.simulator, reason_of(errno)));
+UdpPort::UdpPort(std::uint16_t number, std::string_view user)
+    : number_(number), socket_(bound(SOCK_DGRAM, number, user)) {
+  sockaddr_in own{};
+  socklen_t size = sizeof own;
+  ::getsockname(socket_.get(), reinterpret_cast<sockaddr*>(&own), &size);
+  number_ = ntohs(own.sin_port);
 }
 
-bool Ports::accept() {
+std::vector<Bytes> UdpPort::receive() {
+  std::vector<Bytes> all;
+  std::array<std::uint8_t, 65536> datagram;
+  sockaddr_in from{};
+  socklen_t size_of_from = sizeof from;
+  for (ssize_t size = 0;
+       (size = ::recvfrom(socket_.get(), datagram.data(), datagram.size(), 0,
+                          reinterpret_cast<sockaddr*>(&from), &size_of_from)) > 0;) {
+    if (peer_ == 0) peer_ = ntohs(from.sin_port);
+    all.emplace_back(datagram.begin(), datagram.begin() + size);
+  }
+  return all;
+}
+
+void UdpPort::send(std::span<const std::uint8_t> bytes) {
+  const sockaddr_in to = local(peer_);
+  // As on a real link, nobody may listen.
+  (void)::sendto(socket_.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL,
+                 reinterpret_cast<const sockaddr*>(&to), sizeof to);
+}
+
+void UdpPort::wait(Duration limit) const {
+  wait_for(socket_, limit);
+}
+
+TcpPort::TcpPort(std::uint16_t number, std::string_view user)
+    : number_(number), listener_(bound(SOCK_STREAM, number, user)) {
+  if (::listen(listener_.get(), 1) != 0)
+    throw Error(ErrorCode::kSetup, fmt::format("cannot wait for {} at TCP port {}: {}", user,
+                                               number, reason_of(errno)));
+}
+
+bool TcpPort::accept() {
   if (!stream_)
     stream_ = os::FileDescriptor(
         ::accept4(listener_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
@@ -71,7 +97,7 @@ bool Ports::accept() {
   return static_cast<bool>(stream_);
 }
 
-std::vector<std::uint8_t> Ports::receive_stream() {
+std::vector<std::uint8_t> TcpPort::receive() {
   std::vector<std::uint8_t> bytes;
   std::array<std::uint8_t, 4096> part{};
   for (ssize_t size = 0; (size = ::recv(stream_.get(), part.data(), part.size(), 0)) > 0;)
@@ -79,34 +105,14 @@ std::vector<std::uint8_t> Ports::receive_stream() {
   return bytes;
 }
 
-void Ports::send_stream(std::span<const std::uint8_t> bytes) {
+void TcpPort::send(std::span<const std::uint8_t> bytes) {
   const ssize_t sent = ::send(stream_.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL);
   if (sent != static_cast<ssize_t>(bytes.size()))
     throw Error(ErrorCode::kLinkLost,
                 "takes no more from the simulator: " + reason_of(sent < 0 ? errno : EAGAIN));
 }
 
-std::vector<Bytes> Ports::receive_datagrams() {
-  std::vector<Bytes> all;
-  std::array<std::uint8_t, 65536> datagram;
-  for (ssize_t size = 0;
-       (size = ::recv(datagrams_.get(), datagram.data(), datagram.size(), 0)) > 0;)
-    all.emplace_back(datagram.begin(), datagram.begin() + size);
-  return all;
-}
-
-void Ports::send_datagram(std::span<const std::uint8_t> bytes) {
-  const sockaddr_in to = local(numbers_.controller);
-  // As on a real link, nobody may listen.
-  (void)::sendto(datagrams_.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL,
-                 reinterpret_cast<const sockaddr*>(&to), sizeof to);
-}
-
-void Ports::wait_for_datagram(Duration limit) const {
-  wait_for(datagrams_, limit);
-}
-
-void Ports::wait_for_stream(Duration limit) const {
+void TcpPort::wait(Duration limit) const {
   wait_for(stream_, limit);
 }
 

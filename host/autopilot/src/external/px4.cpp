@@ -2,18 +2,16 @@
 // shows that all of it was taken. Once PX4 rests, HIL_SENSOR gives it its new time; it computes
 // until it has come to rest again. What it has sent meanwhile, it has sent at this step.
 
-#include "external/held_program.h"
+#include "external/external_controller.h"
 #include "external/hil.h"
-#include "external/ports.h"
-#include "set_down.h"
 
 #include <algorithm>
-#include <cmath>
+#include <map>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include <tether/autopilot/px4.h>
 #include <tether/base/error.h>
 #include <tether/mavlink/frame.h>
 #include <tether/os/clock.h>
@@ -21,16 +19,26 @@
 namespace tether::autopilot {
 namespace {
 
-constexpr mavlink::Address kSimulator{.system = 255, .component = 190};
 constexpr Duration kGpsPeriod = std::chrono::milliseconds(200);
 constexpr int kSafetyArmed = 128;  // MAV_MODE_FLAG_SAFETY_ARMED
+
+// Of its first instance; those of the others follow.
+enum Port : int {
+  kSimulatorPort = 4560,   // TCP: PX4 connects to it
+  kCompanionPort = 14540,  // UDP: PX4 sends to it …
+  kOwnPort = 14580,        // … and listens here
+  kGroundPort = 18570,     // PX4 listens here, too
+};
+std::uint16_t number(Port port, const ExternalSettings& settings) {
+  return static_cast<std::uint16_t>(port + settings.instance);
+}
 
 std::string text_of(double value) {
   return fmt::format("{:.9g}", value);
 }
 
 /// What PX4 must know of the vehicle: where its rotors are and how they turn, and what they can.
-os::Environment parameters_of(const Px4Settings& settings) {
+os::Environment px4_environment(const ExternalSettings& settings) {
   const uav::MultirotorParameters& airframe = settings.vehicle.airframe;
   // PX4 takes a value that is its own default for none, and then that of the airframe's script.
   constexpr double kNoDefault = 1e-5;
@@ -56,104 +64,71 @@ os::Environment parameters_of(const Px4Settings& settings) {
   return environment;
 }
 
-os::ChildCommand command_of(const Px4Settings& settings) {
-  const std::filesystem::path program = settings.build / "bin/px4", files = settings.build / "etc";
-  std::error_code none;
-  for (const std::filesystem::path& needed : {program, files})
-    if (!std::filesystem::exists(needed, none))
-      throw Error(ErrorCode::kSetup, {settings.build.string()},
-                  "has no " + needed.lexically_relative(settings.build).string() +
-                      ". 'path' must be the folder of PX4's build for its software in the loop, "
-                      "such as PX4-Autopilot/build/px4_sitl_default.")
-          .about(settings.build.string());
-  std::filesystem::remove_all(settings.folder, none);
-  std::filesystem::create_directories(settings.folder, none);
-  return {.arguments = {program.string(), "-d", "-i", std::to_string(settings.instance),
-                        files.string()},
-          .environment = parameters_of(settings),
+os::ChildCommand px4_command(const ExternalSettings& settings) {
+  prepare_folders(settings, {"bin/px4", "etc"},
+                  "the folder of PX4's build for its software in the loop, such as "
+                  "PX4-Autopilot/build/px4_sitl_default");
+  return {.arguments = {(settings.build / "bin/px4").string(), "-d", "-i",
+                        std::to_string(settings.instance), (settings.build / "etc").string()},
+          .environment = px4_environment(settings),
           .log = settings.folder / "px4.log",
           .working_folder = settings.folder};
 }
 
-const sim::Sensor* sensor_of(const sim::Uav& vehicle, uav::SensorKind kind) {
-  const auto found = std::ranges::find(vehicle.sensors, kind, &sim::Sensor::kind);
-  return found == vehicle.sensors.end() ? nullptr : &*found;
-}
-
-class Px4 : public FlightController {
+class Px4 final : public ExternalController {
  public:
-  explicit Px4(const Px4Settings& settings)
-      : settings_(settings),
-        ports_(settings.instance),
-        program_("PX4 of UAV '" + settings.vehicle.name + "'", command_of(settings)) {
-    connect();
-    boot();
-  }
-
-  Actions step(const Sensed& sensed, const std::vector<Bytes>& received) override {
-    Actions actions;
-    const auto pass_on = [&] {
-      for (const Bytes& bytes : received) ports_.send_datagram(bytes);
-      fence();
-    };
-    // What it does with them, it does before its time goes on.
-    if (!received.empty()) program_.let_rest(pass_on, [this] { serve(); });
-    advance(settings_.boot + sensed.at.time_since_epoch(), readings_of(sensed));
-    is_set_down_ = is_set_down_ || set_down_.is_done(sensed.at, sensed.truth);
-    actions.setpoint = is_set_down_ ? rotors() : SetDown::setpoint();
-    actions.sent = std::exchange(sent_, {});
-    return actions;
-  }
-
-  std::string version() const override { return version_; }
+  explicit Px4(const ExternalSettings& settings)
+      : Px4(settings, Ports{{number(kSimulatorPort, settings), "PX4"},
+                            {number(kCompanionPort, settings), "PX4"}}) {}
 
  private:
+  struct Ports {
+    TcpPort simulator;
+    UdpPort companion;
+  };
+  Px4(const ExternalSettings& settings, Ports&& ports)
+      : ExternalController(settings, "PX4", std::move(ports.companion), px4_command(settings)),
+        simulator_(std::move(ports.simulator)) {
+    link_.set_peer(number(kOwnPort, settings));
+    connect();
+  }
+
   void connect() {
     constexpr Duration kLimit = std::chrono::seconds(30);
     constexpr Duration kBetween = std::chrono::milliseconds(1);
     const Duration began = os::read_clock(CLOCK_MONOTONIC);
-    for (Duration now = began; !ports_.accept(); now = os::read_clock(CLOCK_MONOTONIC)) {
+    for (Duration now = began; !simulator_.accept(); now = os::read_clock(CLOCK_MONOTONIC)) {
       program_.require_alive();
       if (now - began > kLimit)
-        throw Error(
-            ErrorCode::kSetup,
-            fmt::format("PX4 has not connected to the simulator's port {} within 30 s; see "
-                        "{}",
-                        ports_.numbers().simulator, (settings_.folder / "px4.log").string()));
+        throw Error(ErrorCode::kSetup,
+                    fmt::format("{} has not connected to the simulator's port {} within 30 s; see "
+                                "{}",
+                                name_, simulator_.number(), program_.log().string()));
       os::sleep_until(now + kBetween);
     }
   }
 
-  // On the ground, where nothing moves.
-  void boot() {
-    const uav::BodyState truth{settings_.vehicle.X_WB.p, settings_.vehicle.X_WB.q, {}, {}};
-    const uav::Vec3 at_rest_B =
-        rotate(inverse(truth.q_WB), uav::Vec3{0.0, 0.0, settings_.gravity_m_s2});
-    const Readings still =
-        ideal_readings(truth, at_rest_B, settings_.place, settings_.magnetic_field_T);
+  bool has_booted(Duration at) override {
     constexpr Duration kForVersion = std::chrono::seconds(2);
-    for (Duration at = kPx4Period; at < settings_.boot; at += kPx4Period) {
-      if (at == settings_.boot - kForVersion) ask_version();
-      advance(at, still);
+    if (at >= settings_.boot - kForVersion && !std::exchange(has_asked_, true)) {
+      request(kVersionMessage);
+      fence();
     }
-    sent_.clear();  // nobody was there
+    return at >= settings_.boot;
   }
 
-  void ask_version() {
-    // MAV_CMD_REQUEST_MESSAGE of AUTOPILOT_VERSION
-    constexpr int kCommand = 512, kWanted = 148;
-    send(mavlink::Message("COMMAND_LONG")
-             .set("command", kCommand)
-             .set("param1", kWanted)
-             .set("target_system", settings_.instance + 1)
-             .set("target_component", 1));
-    fence();
+  // What it does with them, it does before its time goes on.
+  void pass_on(const std::vector<Bytes>& received) override {
+    const auto send = [&] {
+      for (const Bytes& bytes : received) link_.send(bytes);
+      fence();
+    };
+    program_.let_rest(send, [this] { serve(); });
   }
 
-  /// One step of PX4's own time.
-  void advance(Duration at, const Readings& exact) {
+  void advance(Duration at, const uav::BodyState&, const Readings& exact) override {
     const Readings readings =
-        with_noise(exact, settings_.seed, static_cast<std::uint64_t>(at / kPx4Period));
+        with_noise(exact, settings_.seed, static_cast<std::uint64_t>(at / settings_.period));
     const auto send = [&] {
       std::vector<std::uint8_t> bytes;  // sent at once, so that they wake it once
       const auto add = [&](const mavlink::Message& message) {
@@ -163,44 +138,35 @@ class Px4 : public FlightController {
       if (std::exchange(gps_, at / kGpsPeriod) != at / kGpsPeriod)
         add(hil_gps(at, readings.position));
       add(hil_sensor(at, readings));
-      ports_.send_stream(bytes);
+      simulator_.send(bytes);
       // Its actuators come late in its step. During the boot, none do.
       constexpr Duration kWait = std::chrono::seconds(1);
-      if (std::exchange(has_sent_controls_, false)) ports_.wait_for_stream(kWait);
+      if (std::exchange(has_sent_controls_, false)) simulator_.wait(kWait);
     };
     program_.let_rest(send, [this] { serve(); });
   }
 
+  std::vector<double> rotor_shares() const override {
+    const std::size_t rotors = settings_.vehicle.airframe.rotors.size();
+    const bool is_armed = controls_ && (controls_->integer("mode") & kSafetyArmed) != 0;
+    return is_armed ? autopilot::rotor_shares(*controls_, rotors)
+                    : std::vector<double>(rotors, 0.0);
+  }
+
+  bool take(const mavlink::Message& m) override {
+    const bool is_answer = m.is("TIMESYNC") && m.integer("ts1") == fence_ && m.integer("tc1") != 0;
+    has_answered_ = has_answered_ || is_answer;
+    return is_answer;
+  }
+
   // Takes what PX4 sends, so that its buffers are never full.
   void serve() {
-    for (mavlink::Frame& frame : decoder_.push(ports_.receive_stream()))
+    for (mavlink::Frame& frame : decoder_.push(simulator_.receive()))
       if (frame.message.is("HIL_ACTUATOR_CONTROLS")) {
         controls_ = std::move(frame.message);
         has_sent_controls_ = true;
       }
-    for (Bytes& datagram : ports_.receive_datagrams()) take(std::move(datagram));
-  }
-
-  void take(Bytes datagram) {
-    const auto frames = mavlink::Decoder().push_datagram(datagram);
-    for (const mavlink::Frame& frame : frames) {
-      const mavlink::Message& m = frame.message;
-      if (m.is("TIMESYNC") && m.integer("ts1") == fence_ && m.integer("tc1") != 0) {
-        has_answered_ = true;
-        if (frames.size() == 1) return;
-      }
-      if (m.is("AUTOPILOT_VERSION")) {
-        constexpr unsigned kMajor = 24, kMinor = 16, kPatch = 8, kByte = 0xff;
-        const auto number = static_cast<std::uint32_t>(m.integer("flight_sw_version"));
-        version_ = fmt::format("{}.{}.{}", number >> kMajor, (number >> kMinor) & kByte,
-                               (number >> kPatch) & kByte);
-      }
-    }
-    sent_.push_back(std::move(datagram));
-  }
-
-  void send(const mavlink::Message& message) {
-    ports_.send_datagram(mavlink::encode(message, kSimulator, sequence_++));
+    serve_link();
   }
 
   /// Waits until PX4 has taken all datagrams that were sent to it.
@@ -209,71 +175,29 @@ class Px4 : public FlightController {
     has_answered_ = false;
     send(mavlink::Message("TIMESYNC").set("tc1", 0).set("ts1", ++fence_));
     for (Duration waited{0}; !has_answered_ && waited < kLimit; waited += kWait) {
-      ports_.wait_for_datagram(kWait);
+      link_.wait(kWait);
       serve();
       program_.require_alive();
     }
   }
 
-  Readings readings_of(const Sensed& sensed) {
-    const auto* imu = sensor_of(settings_.vehicle, uav::SensorKind::kImu);
-    const auto* compass = sensor_of(settings_.vehicle, uav::SensorKind::kMagnetometer);
-    const auto measured = std::get<uav::ImuSample>(*sensed.measure(uav::SensorKind::kImu));
-    Readings readings =
-        ideal_readings(sensed.truth, rotate(imu->X_BS.q, measured.specific_force_m_s2),
-                       settings_.place, settings_.magnetic_field_T);
-    readings.w_WB_B_rad_s = rotate(imu->X_BS.q, measured.angular_velocity_rad_s);
-    if (const auto sample = sensed.measure(uav::SensorKind::kMagnetometer))
-      readings.field_B_T =
-          rotate(compass->X_BS.q, std::get<uav::MagnetometerSample>(*sample).field_T);
-    if (const auto sample = sensed.measure(uav::SensorKind::kBarometer))
-      readings.pressure_Pa = std::get<uav::BarometerSample>(*sample).pressure_Pa;
-    if (const auto sample = sensed.measure(uav::SensorKind::kNavSat))
-      readings.position = std::get<uav::NavSatSample>(*sample);
-    return readings;
-  }
-
-  uav::Setpoint rotors() const {
-    const uav::MultirotorParameters& airframe = settings_.vehicle.airframe;
-    uav::Setpoint setpoint;
-    setpoint.mask = uav::kRotorSpeeds;
-    const bool is_armed = controls_ && (controls_->integer("mode") & kSafetyArmed) != 0;
-    setpoint.rotor_speeds_rad_s = is_armed ? rotor_speeds_rad_s(*controls_, airframe.rotors.size(),
-                                                                airframe.max_rotor_speed_rad_s)
-                                           : std::vector<double>(airframe.rotors.size(), 0.0);
-    return setpoint;
-  }
-
-  Px4Settings settings_;
-  Ports ports_;
-  HeldProgram program_;
+  TcpPort simulator_;
   mavlink::Decoder decoder_;
   std::uint8_t sequence_ = 0;
   std::optional<mavlink::Message> controls_;
   bool has_sent_controls_ = false;  ///< in the newest step
-  std::vector<Bytes> sent_;
-  std::int64_t gps_ = 0;  ///< number of the last fix
+  std::int64_t gps_ = 0;            ///< number of the last fix
   std::int64_t fence_ = 0;
   bool has_answered_ = false;
-  std::string version_;
-  SetDown set_down_;
-  bool is_set_down_ = false;
+  bool has_asked_ = false;  ///< for its version
 };
 
 }  // namespace
 
-std::unique_ptr<FlightController> start_px4(const Px4Settings& settings) {
-  if (sensor_of(settings.vehicle, uav::SensorKind::kImu) == nullptr)
-    throw Error(ErrorCode::kSetup, "PX4 needs an IMU, and the UAV '" + settings.vehicle.name +
-                                       "' has none. Add one to its model");
-  return std::make_unique<Px4>(settings);
-}
-
-bool is_px4_parameter(const std::string& name) {
-  constexpr std::size_t kLongest = 16;
-  return !name.empty() && name.size() <= kLongest && std::ranges::all_of(name, [](char c) {
-    return (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
-  });
+std::unique_ptr<FlightController> start_px4(const ExternalSettings& settings) {
+  // It binds these itself.
+  for (const Port port : {kOwnPort, kGroundPort}) (void)UdpPort(number(port, settings), "PX4");
+  return booted<Px4>(settings);
 }
 
 }  // namespace tether::autopilot

@@ -48,27 +48,11 @@ TEST(Hil, PositionsAreInTheUnitsOfGps) {
   EXPECT_EQ(hil_gps({}, lost).integer("eph"), 65'535);
 }
 
-TEST(Hil, NoiseIsKeyedAndSmall) {
-  const Readings exact = ideal_readings({}, {0.0, 0.0, 9.81}, kPlace, kField_T);
-  double sum = 0.0, squares = 0.0;
-  constexpr int kSteps = 2'000;
-  for (std::uint64_t step = 0; step < kSteps; ++step) {
-    const double error =
-        with_noise(exact, 1, step).specific_force_B_m_s2.z - exact.specific_force_B_m_s2.z;
-    sum += error;
-    squares += error * error;
-  }
-  EXPECT_NEAR(sum / kSteps, 0.0, 0.003);
-  EXPECT_NEAR(std::sqrt(squares / kSteps), 0.03, 0.002);
-  EXPECT_EQ(with_noise(exact, 1, 7).pressure_Pa, with_noise(exact, 1, 7).pressure_Pa);
-  EXPECT_NE(with_noise(exact, 1, 7).pressure_Pa, with_noise(exact, 2, 7).pressure_Pa);
-}
-
-TEST(Hil, RotorsTurnAtTheirSharesOfTheLargestSpeed) {
+TEST(Hil, RotorsHaveSharesFromZeroToOne) {
   mavlink::Message m("HIL_ACTUATOR_CONTROLS");
   m.set("controls", 0.5, 0).set("controls", 2.0, 1).set("controls", -1.0, 2);
   m.set("controls", std::numeric_limits<double>::quiet_NaN(), 3);
-  EXPECT_EQ(rotor_speeds_rad_s(m, 4, 800.0), (std::vector<double>{400.0, 800.0, 0.0, 0.0}));
+  EXPECT_EQ(rotor_shares(m, 4), (std::vector<double>{0.5, 1.0, 0.0, 0.0}));
 }
 
 }  // namespace

@@ -1,19 +1,24 @@
 #include "tables/read_flight_controller.h"
 
-#include <array>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include <tether/autopilot/built_in.h>
-#include <tether/autopilot/px4.h>
+#include <tether/autopilot/external.h>
 
 namespace tether::scenario {
 namespace {
 
-constexpr std::array<std::string_view, 3> kKinds = {"none", "built-in", "px4"};
+/// The kinds, of which the last ones are those that the user brings.
+std::vector<std::string_view> kinds() {
+  std::vector<std::string_view> keys = {"none", "built-in"};
+  for (const autopilot::External& kind : autopilot::externals()) keys.push_back(kind.key);
+  return keys;
+}
 
 /// With a flight controller, commands are its own.
 void reject_beside_it(const toml::Table& uav) {
@@ -25,34 +30,37 @@ void reject_beside_it(const toml::Table& uav) {
                "Remove this key; see 'link_latency_ms' and the parameter COM_OF_LOSS_T.");
 }
 
-using Kind = FlightController::Kind;
-
-/// Keys that only one kind has.
-void reject_keys_of_others(const toml::Table& table, Kind kind) {
-  constexpr std::array<std::pair<const char*, Kind>, 3> kKeys = {
-      {{"starts_in_air", Kind::kBuiltIn}, {"path", Kind::kPx4}, {"boot_s", Kind::kPx4}}};
-  for (const auto& [key, owner] : kKeys)
-    if (table.has(key) && owner != kind)
-      table.fail(key, fmt::format("is of the flight controller \"{}\" only. Remove this key.",
-                                  kKinds[1 + static_cast<std::size_t>(owner)]));
+/// Keys that only the built-in one has, or only the others.
+void reject_keys_of_others(const toml::Table& table, const FlightController& controller) {
+  const bool is_built_in = controller.external == nullptr;
+  for (const auto& [key, of_built_in] :
+       {std::pair{"starts_in_air", true}, {"path", false}, {"boot_s", false}})
+    if (table.has(key) && of_built_in != is_built_in)
+      table.fail(key,
+                 is_built_in
+                     ? "is of flight controllers that you bring, such as \"px4\". Remove this key."
+                     : "is of the flight controller \"built-in\" only. Remove this key.");
 }
 
-std::string complaint_about_parameter(Kind kind, const std::string& name, double value) {
-  if (kind == Kind::kBuiltIn) return autopilot::complaint_about_parameter(name, value);
-  return autopilot::is_px4_parameter(name)
-             ? ""
-             : "is no name of a parameter of PX4, which has at most 16 capital letters, digits and "
-               "'_'.";
+std::string complaint_about_parameter(const FlightController& controller, const std::string& name,
+                                      double value) {
+  if (controller.external == nullptr) return autopilot::complaint_about_parameter(name, value);
+  if (autopilot::is_external_parameter(name)) return "";
+  return fmt::format(
+      "is no name of a parameter of {}, which has at most 16 capital letters, digits and '_'.",
+      controller.external->name);
 }
 
-std::map<std::string, double> read_parameters(const toml::Table& table, Kind kind) {
+std::map<std::string, double> read_parameters(const toml::Table& table,
+                                              const FlightController& controller) {
   constexpr toml::Range kValue{.min = -1e9, .max = 1e9};
   std::map<std::string, double> values;
   if (!table.has("parameters")) return values;
   const toml::Table parameters = table.table("parameters");
   for (const std::string& name : parameters.keys()) {
     const double value = parameters.number(name, kValue);
-    if (const std::string wrong = complaint_about_parameter(kind, name, value); !wrong.empty())
+    if (const std::string wrong = complaint_about_parameter(controller, name, value);
+        !wrong.empty())
       parameters.fail(name, wrong);
     values[name] = value;
   }
@@ -63,17 +71,18 @@ FlightController read_settings(const toml::Table& table, FlightController contro
   constexpr toml::Range kBaud{.min = 0.0, .max = 1e9};
   constexpr toml::Range kLatency_ms{.min = 0.0, .max = 10'000.0};
   constexpr toml::Range kBoot_s{.min = 1.0, .max = 600.0};
-  reject_keys_of_others(table, controller.kind);
+  reject_keys_of_others(table, controller);
   controller.link_baud = table.number_or("link_baud", kBaud, 0.0);
   controller.link_latency = table.duration_or("link_latency_ms", kLatency_ms, Duration{0});
   controller.starts_in_air = table.boolean_or("starts_in_air", false);
-  controller.boot =
-      duration_from_seconds(table.number_or("boot_s", kBoot_s, to_seconds(controller.boot)));
-  controller.parameters = read_parameters(table, controller.kind);
-  if (controller.kind == Kind::kPx4)
-    controller.path =
-        (std::filesystem::path(table.where("path").file).parent_path() / table.text("path"))
-            .lexically_normal();
+  controller.parameters = read_parameters(table, controller);
+  if (controller.external == nullptr) return controller;
+  controller.has_fixed_ports = controller.external->has_fixed_ports;
+  controller.boot = duration_from_seconds(
+      table.number_or("boot_s", kBoot_s, to_seconds(controller.external->boot)));
+  controller.path =
+      (std::filesystem::path(table.where("path").file).parent_path() / table.text("path"))
+          .lexically_normal();
   return controller;
 }
 
@@ -84,20 +93,23 @@ std::optional<FlightController> read_flight_controller(const toml::Table& uav) {
   if (!uav.has(kKey)) return std::nullopt;
   FlightController controller;
   controller.at = uav.where(kKey);
+  const std::vector<std::string_view> all = kinds();
   const auto take_kind = [&](std::size_t kind) {
-    if (kind > 0) controller.kind = static_cast<Kind>(kind - 1);
+    constexpr std::size_t kFirstExternal = 2;
+    if (kind >= kFirstExternal)
+      controller.external = &autopilot::externals()[kind - kFirstExternal];
     return kind > 0;
   };
   if (!uav.is_table(kKey)) {
-    if (!take_kind(uav.choice(kKey, kKinds))) return std::nullopt;
-    if (controller.kind != Kind::kBuiltIn)
-      uav.fail(kKey,
-               "needs settings: write [uav.flight_controller] with kind = \"px4\" and the "
-               "'path' of PX4's build.");
+    if (!take_kind(uav.choice(kKey, all))) return std::nullopt;
+    if (const autopilot::External* const external = controller.external)
+      uav.fail(kKey, fmt::format("needs settings: write [uav.flight_controller] with kind = \"{}\" "
+                                 "and the 'path' of {}'s build.",
+                                 external->key, external->name));
   } else {
     const toml::Table table = uav.table(kKey, {"kind", "path", "boot_s", "link_baud",
                                                "link_latency_ms", "starts_in_air", "parameters"});
-    if (!take_kind(table.choice("kind", kKinds))) return std::nullopt;
+    if (!take_kind(table.choice("kind", all))) return std::nullopt;
     controller = read_settings(table, std::move(controller));
   }
   reject_beside_it(uav);

@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <tether/autopilot/external.h>
 #include <tether/base_testing/scratch_folder.h>
 #include <tether/base_testing/thrown_error.h>
 #include <tether/scenario/scenario.h>
@@ -30,7 +31,7 @@ TEST(ReadFlightController, IsNoneByDefault) {
 TEST(ReadFlightController, IsAName) {
   const auto controller = read_one("flight_controller = \"built-in\"");
   ASSERT_TRUE(controller);
-  EXPECT_EQ(controller->kind, FlightController::Kind::kBuiltIn);
+  EXPECT_EQ(controller->external, nullptr);
   EXPECT_EQ(controller->link_baud, 0.0);
   EXPECT_EQ(controller->link_latency, Duration(0));
   EXPECT_FALSE(controller->starts_in_air);
@@ -51,6 +52,20 @@ parameters = { MPC_XY_CRUISE = 3, COM_OBL_RC_ACT = 4 }
   EXPECT_TRUE(controller->starts_in_air);
   EXPECT_EQ(controller->parameters,
             (std::map<std::string, double>{{"MPC_XY_CRUISE", 3.0}, {"COM_OBL_RC_ACT", 4.0}}));
+}
+
+TEST(ReadFlightController, IsOneThatTheUserBrings) {
+  for (const auto& [kind, boot_s] : {std::pair{"px4", 30.0}}) {
+    const std::string table = "[uav.flight_controller]\nkind = \"" + std::string(kind) +
+                              "\"\npath = \"builds/mine\"\nparameters = { ANY_NAME_1 = -2.5 }\n";
+    const auto controller = read_one(table);
+    ASSERT_TRUE(controller && controller->external);
+    EXPECT_EQ(controller->external->key, kind);
+    EXPECT_EQ(controller->path, "builds/mine") << "beside the file";
+    EXPECT_EQ(to_seconds(controller->boot), boot_s);
+    EXPECT_EQ(controller->parameters.at("ANY_NAME_1"), -2.5);
+    EXPECT_EQ(to_seconds(read_one(table + "boot_s = 12.5")->boot), 12.5);
+  }
 }
 
 TEST(ReadFlightController, RefusesBadValuesWhereTheyAre) {
@@ -75,6 +90,17 @@ TEST(ReadFlightController, RefusesBadValuesWhereTheyAre) {
             "NAV_ACC_RAD"},
            {"[uav.flight_controller]\nkind = \"built-in\"\nparameters = { COM_OBL_RC_ACT = 1.5 }",
             4, "a whole number from 0 to 5"},
+           {"flight_controller = \"px4\"", 2,
+            "needs settings: write [uav.flight_controller] with kind = \"px4\" and the "
+            "'path' of PX4's build"},
+           {"[uav.flight_controller]\nkind = \"px4\"", 2, "path"},
+           {"[uav.flight_controller]\nkind = \"px4\"\npath = \"x\"\nstarts_in_air = true", 5,
+            "is of the flight controller \"built-in\" only"},
+           {"[uav.flight_controller]\nkind = \"built-in\"\nboot_s = 3", 4,
+            "is of flight controllers that you bring"},
+           {"[uav.flight_controller]\nkind = \"px4\"\npath = \"x\"\n"
+            "parameters = { \"rtl alt\" = 3 }",
+            5, "is no name of a parameter of PX4"},
            {"flight_controller = \"built-in\"\ncommand_latency_ms = 3", 3,
             "has no effect beside 'flight_controller'"},
            {"setpoint_timeout_ms = 3\nflight_controller = \"built-in\"", 2, "COM_OF_LOSS_T"},

@@ -1,0 +1,132 @@
+#include "external/external_controller.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <tether/base/error.h>
+#include <tether/mavlink/frame.h>
+
+namespace tether::autopilot {
+namespace {
+
+// Of AUTOPILOT_VERSION.
+std::string version_of(const mavlink::Message& m) {
+  constexpr unsigned kMajor = 24, kMinor = 16, kPatch = 8, kByte = 0xff;
+  const auto number = static_cast<std::uint32_t>(m.integer("flight_sw_version"));
+  return fmt::format("{}.{}.{}", number >> kMajor, (number >> kMinor) & kByte,
+                     (number >> kPatch) & kByte);
+}
+
+}  // namespace
+
+ExternalController::ExternalController(const ExternalSettings& settings, std::string_view name,
+                                       UdpPort&& link, os::ChildCommand command)
+    : settings_(settings),
+      name_(fmt::format("{} of UAV '{}'", name, settings.vehicle.name)),
+      link_(std::move(link)),
+      program_(name_, std::move(command)) {}
+
+void ExternalController::boot() {
+  const uav::BodyState truth{settings_.vehicle.X_WB.p, settings_.vehicle.X_WB.q, {}, {}};
+  const uav::Vec3 at_rest_B =
+      rotate(inverse(truth.q_WB), uav::Vec3{0.0, 0.0, settings_.gravity_m_s2});
+  const Readings still =
+      ideal_readings(truth, at_rest_B, settings_.place, settings_.magnetic_field_T);
+  for (booted_ = settings_.period; !has_booted(booted_); booted_ += settings_.period)
+    advance(booted_, truth, still);
+  sent_.clear();  // nobody was there
+}
+
+Actions ExternalController::step(const Sensed& sensed, const std::vector<Bytes>& received) {
+  Actions actions;
+  if (!received.empty()) pass_on(received);
+  advance(booted_ + sensed.at.time_since_epoch(), sensed.truth, readings_of(settings_, sensed));
+  is_set_down_ = is_set_down_ || set_down_.is_done(sensed.at, sensed.truth);
+  actions.setpoint = SetDown::setpoint();
+  if (is_set_down_) {
+    actions.setpoint = uav::Setpoint{.mask = uav::kRotorSpeeds};
+    for (const double share : rotor_shares())
+      actions.setpoint->rotor_speeds_rad_s.push_back(
+          share * settings_.vehicle.airframe.max_rotor_speed_rad_s);
+  }
+  actions.sent = std::exchange(sent_, {});
+  return actions;
+}
+
+void ExternalController::serve_link() {
+  for (Bytes& datagram : link_.receive()) take_datagram(std::move(datagram));
+}
+
+void ExternalController::take_datagram(Bytes datagram) {
+  const auto frames = mavlink::Decoder().push_datagram(datagram);
+  bool is_own = !frames.empty();
+  for (const mavlink::Frame& frame : frames) {
+    if (frame.message.is("AUTOPILOT_VERSION")) version_ = version_of(frame.message);
+    is_own = take(frame.message) && is_own;
+  }
+  if (!is_own) sent_.push_back(std::move(datagram));
+}
+
+void ExternalController::send(const mavlink::Message& message) {
+  link_.send(mavlink::encode(message, kSimulator, sequence_++));
+}
+
+void ExternalController::command(int id, double param1) {
+  send(mavlink::Message("COMMAND_LONG")
+           .set("command", id)
+           .set("param1", param1)
+           .set("target_system", settings_.instance + 1)
+           .set("target_component", 1));
+}
+
+void ExternalController::request(int message_id) {
+  constexpr int kRequestMessage = 512;
+  command(kRequestMessage, message_id);
+}
+
+void prepare_folders(const ExternalSettings& settings,
+                     const std::vector<std::filesystem::path>& needed, std::string_view what) {
+  std::error_code none;
+  for (const std::filesystem::path& file : needed)
+    if (!std::filesystem::exists(settings.build / file, none))
+      throw Error(ErrorCode::kSetup, {settings.build.string()},
+                  fmt::format("has no {}. 'path' must be {}.", file.string(), what))
+          .about(settings.build.string());
+  std::filesystem::remove_all(settings.folder, none);
+  std::filesystem::create_directories(settings.folder, none);
+}
+
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+// UAVs of PX4 beyond the tenth would share ports; systems of MAVLink are numbered with a byte.
+constexpr std::array kExternals = {
+    External{.key = "px4",
+             .name = "PX4",
+             .period = milliseconds(4),  // of its own simulations
+             .boot = seconds(30),
+             .most_uavs = 10,
+             .has_fixed_ports = true,
+             .repeats = false,  // load and clocks of the machine are among what it tells
+             .start = start_px4},
+};
+
+}  // namespace
+
+std::span<const External> externals() {
+  return kExternals;
+}
+
+bool is_external_parameter(std::string_view name) {
+  constexpr std::size_t kLongest = 16;
+  return !name.empty() && name.size() <= kLongest && std::ranges::all_of(name, [](char c) {
+    return (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+  });
+}
+
+}  // namespace tether::autopilot
