@@ -194,6 +194,9 @@ constexpr Row kRows[] = {
      "time_usec:u64(us) angle_x:f(rad) angle_y:f(rad) distance:f(m) size_x:f(rad) "
      "size_y:f(rad) target_num:u8 frame:u8 | x:f(m) y:f(m) z:f(m) q:f[4] type:u8 "
      "position_valid:u8"},
+    {193, "EKF_STATUS_REPORT",  // of ArduPilot
+     "velocity_variance:f pos_horiz_variance:f pos_vert_variance:f compass_variance:f "
+     "terrain_alt_variance:f flags:u16 | airspeed_variance:f"},
     {230, "ESTIMATOR_STATUS",
      "time_usec:u64(us) vel_ratio:f pos_horiz_ratio:f pos_vert_ratio:f mag_ratio:f "
      "hagl_ratio:f tas_ratio:f pos_horiz_accuracy:f(m) pos_vert_accuracy:f(m) flags:u16"},

@@ -14,7 +14,7 @@ TEST(MessageType, HasTheExtraChecksumsThatPeersHave) {
       {"COMMAND_LONG", 152}, {"COMMAND_ACK", 143},     {"HIL_SENSOR", 108},
       {"HIL_GPS", 124},      {"PARAM_VALUE", 220},     {"SET_POSITION_TARGET_LOCAL_NED", 143},
       {"TIMESYNC", 34},      {"MISSION_ITEM_INT", 38}, {"STATUSTEXT", 83},
-      {"ESC_STATUS", 10}};
+      {"ESC_STATUS", 10},    {"EKF_STATUS_REPORT", 71}};
   for (const auto& [name, crc_extra] : published)
     EXPECT_EQ(find_type(name)->crc_extra, crc_extra) << name;
 }
