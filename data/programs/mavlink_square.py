@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """A companion computer's program: takes off, flies a square by velocity set-points, and lands.
 
-It talks MAVLink 2 to the flight controller over UDP, as PX4 offers it to companions (port 14540),
-and needs nothing but Python. Ten times a second it plans: it simulates the next second for many
+It talks MAVLink 2 to the flight controller (PX4 or ArduPilot) over UDP port 14540, and needs nothing
+but Python. Ten times a second it plans: it simulates the next second for many
 velocities, and commands the one that ends nearest to the corner. Exit code 0: it was at each corner
 for half a second, and has landed.
 
@@ -28,7 +28,8 @@ MESSAGES = {
 }
 HEARTBEAT, POSITION, COMMAND, ACK, SET_POINT, STATE, TEXT = MESSAGES
 
-ARM, TAKE_OFF, LAND, SET_MODE = 400, 22, 21, 176
+ARM, TAKE_OFF, LAND, SET_MODE, SET_INTERVAL = 400, 22, 21, 176, 511
+ARDUPILOT = 3
 VELOCITY_ONLY = 0b0000_1101_1100_0111 & ~0b1000_0000_0000 | 0b0100_0000_0000
 PERIOD_S = 0.1
 
@@ -50,6 +51,7 @@ class FlightController:
         self.link = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self.link.bind(("0.0.0.0", port))
         self.address = None
+        self.system = 1
         self.sequence = 0
         self.last = {}
         self.heartbeat_at = 0.0
@@ -57,7 +59,7 @@ class FlightController:
     def send(self, message, *values):
         extra, layout, _ = MESSAGES[message]
         payload = struct.pack(layout, *values).rstrip(b"\0") or b"\0"
-        header = struct.pack("<BBBBBBHB", len(payload), 0, 0, self.sequence, 1, 191,
+        header = struct.pack("<BBBBBBHB", len(payload), 0, 0, self.sequence, self.system, 191,
                              message & 0xFFFF, message >> 16)
         self.sequence = (self.sequence + 1) % 256
         crc = checksum(header + payload + bytes([extra]))
@@ -71,6 +73,7 @@ class FlightController:
         if checksum(frame[1:10 + length] + bytes([extra])) != int.from_bytes(
                 frame[10 + length:12 + length], "little"):
             return
+        self.system = frame[5]
         size = struct.calcsize(layout)
         payload = frame[10:10 + length].ljust(size, b"\0")[:size]
         self.last[message] = dict(zip(names.split(), struct.unpack(layout, payload)))
@@ -97,14 +100,19 @@ class FlightController:
 
     def command(self, command, p1=0.0, p2=0.0, p7=math.nan):
         self.last.pop(ACK, None)
-        nan = math.nan  # of a place or a yaw: the present one
-        self.send(COMMAND, p1, p2, 0.0, nan, nan, nan, p7, command, 1, 1, 0)
+        # Of a place or a yaw, the present one.
+        nan = 0.0 if self.is_ardupilot else math.nan
+        self.send(COMMAND, p1, p2, 0.0, nan, nan, nan, p7, command, self.system, 1, 0)
         while self.last.get(ACK, {}).get("command") != command:
             self.listen(0.02)
         return self.last[ACK]["result"] == 0
 
     def set_velocity(self, vx, vy, vz):
-        self.send(SET_POINT, 0, 0, 0, 0, vx, vy, vz, 0, 0, 0, 0, 0, VELOCITY_ONLY, 1, 1, 1)
+        self.send(SET_POINT, 0, 0, 0, 0, vx, vy, vz, 0, 0, 0, 0, 0, VELOCITY_ONLY, self.system, 1, 1)
+
+    @property
+    def is_ardupilot(self):
+        return self.last[HEARTBEAT]["autopilot"] == ARDUPILOT
 
     @property
     def position(self):
@@ -152,17 +160,28 @@ def main():
     side = float(sys.argv[1]) if len(sys.argv) > 1 else 3.0
     height = float(sys.argv[2]) if len(sys.argv) > 2 else 1.5
     controller = FlightController()
-    while POSITION not in controller.last or controller.last[STATE]["landed_state"] != 1:
+    while HEARTBEAT not in controller.last:
         controller.listen(0.1)
-    if not controller.command(ARM, 1.0) or not controller.command(TAKE_OFF):
+    for message, rate_hz in ((POSITION, 30), (STATE, 5)):
+        controller.command(SET_INTERVAL, message, 1e6 / rate_hz)
+    while POSITION not in controller.last or controller.last.get(STATE, {}).get("landed_state") != 1:
+        controller.listen(0.1)
+    # ArduPilot takes off in the mode in which it follows set-points, GUIDED, to the height it is given.
+    guided, height_of_takeoff = controller.is_ardupilot, math.nan
+    if guided:
+        height_of_takeoff = height + 1.0
+        if not controller.command(SET_MODE, 1, 4):
+            return 1
+    if not controller.command(ARM, 1.0) or not controller.command(TAKE_OFF, p7=height_of_takeoff):
         return 1
     while controller.position[0][2] > -height:
         controller.listen(0.05)
-    for _ in range(15):  # OFFBOARD needs a stream of set-points first
-        controller.set_velocity(0, 0, 0)
-        controller.listen(PERIOD_S)
-    if not controller.command(SET_MODE, 1, 6):
-        return 1
+    if not guided:
+        for _ in range(15):  # OFFBOARD needs a stream of set-points first
+            controller.set_velocity(0, 0, 0)
+            controller.listen(PERIOD_S)
+        if not controller.command(SET_MODE, 1, 6):
+            return 1
     corners = [(side, 0), (side, side), (0, side), (0, 0)]
     reached = all(fly_to(controller, (x, y, -height)) for x, y in corners)
     print(f"{time.monotonic():.3f} {'at all corners' if reached else 'a corner was missed'}")
