@@ -12,7 +12,7 @@ class LocalFrame {
   LocalFrame() = default;
   LocalFrame(const sim::Place& place, const uav::Vec3& p_WL) : place_(place), p_WL_(p_WL) {}
 
-  const uav::Vec3& origin_W() const { return p_WL_; }
+  const uav::Vec3& origin() const { return p_WL_; }  ///< in W
   uav::Vec3 to_ned(const uav::Vec3& v_W) const {
     return mavlink::ned_from_enu(sim::to_enu(place_, v_W));
   }

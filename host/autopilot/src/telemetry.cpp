@@ -310,7 +310,7 @@ void estimator_status(const TelemetrySource& s, Message& m) {
 }
 
 void global_origin(const TelemetrySource& s, Message& m) {
-  const sim::Geodetic origin = s.vehicle.frame.geodetic(s.vehicle.frame.origin_W());
+  const sim::Geodetic origin = s.vehicle.frame.geodetic(s.vehicle.frame.origin());
   m.set("latitude", origin.latitude_deg * 1e7)
       .set("longitude", origin.longitude_deg * 1e7)
       .set("altitude", origin.altitude_m * 1e3)

@@ -67,7 +67,7 @@ class FakePx4 {
     std::printf("INFO  [simulator_mavlink] Simulator connected\n");
     const sockaddr_in own = local(14580 + instance);
     datagrams_ = ::socket(AF_INET, SOCK_DGRAM, 0);
-    ::bind(datagrams_, reinterpret_cast<const sockaddr*>(&own), sizeof own);
+    (void)::bind(datagrams_, reinterpret_cast<const sockaddr*>(&own), sizeof own);
   }
 
   [[noreturn]] void run() {
