@@ -114,6 +114,14 @@ constexpr std::array kExternals = {
              .has_fixed_ports = true,
              .repeats = false,  // load and clocks of the machine are among what it tells
              .start = start_px4},
+    External{.key = "ardupilot",
+             .name = "ArduPilot",
+             .period = milliseconds(1),
+             .boot = seconds(90),
+             .most_uavs = 250,
+             .has_fixed_ports = false,
+             .repeats = true,
+             .start = start_ardupilot},
 };
 
 }  // namespace

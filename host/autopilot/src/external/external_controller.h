@@ -88,5 +88,6 @@ std::unique_ptr<FlightController> booted(const ExternalSettings& settings) {
 }
 
 std::unique_ptr<FlightController> start_px4(const ExternalSettings& settings);
+std::unique_ptr<FlightController> start_ardupilot(const ExternalSettings& settings);
 
 }  // namespace tether::autopilot

@@ -55,7 +55,7 @@ parameters = { MPC_XY_CRUISE = 3, COM_OBL_RC_ACT = 4 }
 }
 
 TEST(ReadFlightController, IsOneThatTheUserBrings) {
-  for (const auto& [kind, boot_s] : {std::pair{"px4", 30.0}}) {
+  for (const auto& [kind, boot_s] : {std::pair{"px4", 30.0}, {"ardupilot", 90.0}}) {
     const std::string table = "[uav.flight_controller]\nkind = \"" + std::string(kind) +
                               "\"\npath = \"builds/mine\"\nparameters = { ANY_NAME_1 = -2.5 }\n";
     const auto controller = read_one(table);
@@ -90,17 +90,17 @@ TEST(ReadFlightController, RefusesBadValuesWhereTheyAre) {
             "NAV_ACC_RAD"},
            {"[uav.flight_controller]\nkind = \"built-in\"\nparameters = { COM_OBL_RC_ACT = 1.5 }",
             4, "a whole number from 0 to 5"},
-           {"flight_controller = \"px4\"", 2,
-            "needs settings: write [uav.flight_controller] with kind = \"px4\" and the "
-            "'path' of PX4's build"},
-           {"[uav.flight_controller]\nkind = \"px4\"", 2, "path"},
+           {"flight_controller = \"ardupilot\"", 2,
+            "needs settings: write [uav.flight_controller] with kind = \"ardupilot\" and the "
+            "'path' of ArduPilot's build"},
+           {"[uav.flight_controller]\nkind = \"ardupilot\"", 2, "path"},
            {"[uav.flight_controller]\nkind = \"px4\"\npath = \"x\"\nstarts_in_air = true", 5,
             "is of the flight controller \"built-in\" only"},
            {"[uav.flight_controller]\nkind = \"built-in\"\nboot_s = 3", 4,
             "is of flight controllers that you bring"},
-           {"[uav.flight_controller]\nkind = \"px4\"\npath = \"x\"\n"
+           {"[uav.flight_controller]\nkind = \"ardupilot\"\npath = \"x\"\n"
             "parameters = { \"rtl alt\" = 3 }",
-            5, "is no name of a parameter of PX4"},
+            5, "is no name of a parameter of ArduPilot"},
            {"flight_controller = \"built-in\"\ncommand_latency_ms = 3", 3,
             "has no effect beside 'flight_controller'"},
            {"setpoint_timeout_ms = 3\nflight_controller = \"built-in\"", 2, "COM_OF_LOSS_T"},

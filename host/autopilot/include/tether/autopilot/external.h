@@ -49,6 +49,9 @@ struct External {
 /// PX4, compiled for its software in the loop ("SITL"), held at each of its steps until it has come
 /// to rest. A little noise is added to its sensors, without which it takes them for broken. It is
 /// told by parameters where the rotors are. (docs.px4.io, "Simulation"; mavlink.io, "HIL_SENSOR".)
+///
+/// ArduPilot's ArduCopter, compiled for its SITL, with its interface "JSON": it sends servos, and
+/// computes nothing until it has the answer. (ardupilot.org, "SITL with JSON".)
 std::span<const External> externals();
 
 /// Whether a parameter of these can have this name: at most 16 capital letters, digits and '_'.
