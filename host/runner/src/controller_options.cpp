@@ -8,6 +8,7 @@
 
 #include <tether/autopilot/built_in.h>
 #include <tether/autopilot/external.h>
+#include <tether/autopilot/ground_station.h>
 #include <tether/base/error.h>
 
 namespace tether::runner {
@@ -89,6 +90,13 @@ ControllerOptions controller_options(const scenario::FlightController& controlle
   ControllerOptions options = controller.external != nullptr
                                   ? external(controller, simulator, uav, seed, folder)
                                   : built_in(controller, simulator, uav);
+  if (controller.ground_station != autopilot::GroundStation::kAbsent)
+    options.make = [make = options.make, what = controller.ground_station,
+                    port = controller.ground_station_port] {
+      return with_ground_station(make(), what, port);
+    };
+  options.repeats =
+      options.repeats && controller.ground_station != autopilot::GroundStation::kCommands;
   options.link_baud = controller.link_baud;
   options.link_latency = controller.link_latency;
   return options;

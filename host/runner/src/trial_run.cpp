@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <tether/autopilot/ground_station.h>
 #include <tether/base/error.h>
 #include <tether/base/version.h>
 #include <tether/board/target_probe.h>
@@ -444,6 +445,11 @@ void TrialRun::end_suts(const TrialEnd& end) {
     for (std::string& note : suts_.await_exit(end.report.suts)) notes_.push_back(std::move(note));
   for (const std::string& warning : suts_.bring_back())
     if (observer_.warn) observer_.warn(warning);
+  if (std::ranges::any_of(spec_.scenario.uavs, [](const scenario::UavSetup& uav) {
+        return uav.flight_controller &&
+               uav.flight_controller->ground_station == autopilot::GroundStation::kCommands;
+      }))
+    notes_.emplace_back("a ground station could command: the flight need not repeat");
 }
 
 }  // namespace tether::runner

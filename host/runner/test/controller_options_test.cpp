@@ -9,6 +9,7 @@
 
 #include <tether/autopilot/built_in.h>
 #include <tether/autopilot/external.h>
+#include <tether/autopilot/ground_station.h>
 #include <tether/base_testing/thrown_error.h>
 #include <tether/sim_testing/fake_simulator.h>
 
@@ -90,6 +91,21 @@ TEST(ControllerOptions, IsRefusedWhereTheScenarioHasIt) {
   sim::World world = sim::make_fake_world(1);
   world.uavs[0].sensors.clear();
   expect_refused(controller, sim::FakeSimulator(world), 0, "PX4 needs an IMU");
+}
+
+TEST(ControllerOptions, DoNotRepeatIfAGroundStationMayCommand) {
+  using autopilot::GroundStation;
+  const sim::FakeSimulator simulator(sim::make_fake_world(1));
+  for (const auto& [what, repeats] : {std::pair{GroundStation::kAbsent, true},
+                                      {GroundStation::kLooks, true},
+                                      {GroundStation::kCommands, false}}) {
+    scenario::FlightController controller;
+    controller.ground_station = what;
+    controller.ground_station_port = autopilot::kGroundStationPort;
+    const auto options = controller_options(controller, simulator, 0, 1, {});
+    EXPECT_EQ(options.repeats, repeats);
+    EXPECT_NE(options.make(), nullptr);
+  }
 }
 
 TEST(ControllerOptions, DescribesOneThatTheUserBrings) {

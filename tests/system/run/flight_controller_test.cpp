@@ -3,9 +3,16 @@
 #include <algorithm>
 #include <set>
 #include <string>
+#include <thread>
+#include <utility>
 
+#include <arpa/inet.h>
 #include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
+#include <tether/mavlink/frame.h>
 #include <tether/record/messages.h>
 
 /// A companion flies a square through the built-in flight controller.
@@ -48,6 +55,72 @@ TEST_F(FlightControllerTest, SetPointsThatComeTooLateEndOffboard) {
             std::string::npos);
   EXPECT_GT(details["errors_m"][0].get<double>(), 0.5) << "it holds instead";
   EXPECT_TRUE(result_["audit"]["passed"]) << result_["audit"]["summary"];
+}
+
+/// Looks on from a thread, and sends a command to land for each fiftieth datagram that it sees:
+/// answers are datagrams, too.
+class Viewer {
+ public:
+  Viewer() {
+    const sockaddr_in any{
+        .sin_family = AF_INET, .sin_port = 0, .sin_addr = {htonl(INADDR_LOOPBACK)}, .sin_zero = {}};
+    ::bind(socket_, reinterpret_cast<const sockaddr*>(&any), sizeof any);
+    sockaddr_in own{};
+    socklen_t size = sizeof own;
+    ::getsockname(socket_, reinterpret_cast<sockaddr*>(&own), &size);
+    port_ = ntohs(own.sin_port);
+    thread_ = std::thread([this] { look(); });
+  }
+  ~Viewer() { end(); }
+  /// How many datagrams it has seen.
+  int end() {
+    ::shutdown(socket_, SHUT_RDWR);  // wakes it
+    if (thread_.joinable()) thread_.join();
+    if (socket_ >= 0) ::close(std::exchange(socket_, -1));
+    return seen_;
+  }
+  std::string settings(const std::string& what) const {
+    return R"({ kind = "built-in", ground_station = ")" + what +
+           "\", ground_station_port = " + std::to_string(port_) + " }";
+  }
+
+ private:
+  void look() {
+    constexpr int kLand = 21;
+    const auto land = mavlink::encode(
+        mavlink::Message("COMMAND_LONG").set("command", kLand).set("target_system", 1), {255, 190},
+        0);
+    std::uint8_t bytes[4096];
+    sockaddr_in from{};
+    socklen_t size = sizeof from;
+    while (::recvfrom(socket_, bytes, sizeof bytes, 0, reinterpret_cast<sockaddr*>(&from), &size) >
+           0) {
+      if (++seen_ % 50 != 0) continue;
+      ::sendto(socket_, land.data(), land.size(), 0, reinterpret_cast<const sockaddr*>(&from),
+               size);
+    }
+  }
+
+  int socket_ = ::socket(AF_INET, SOCK_DGRAM, 0);
+  std::uint16_t port_ = 0;
+  int seen_ = 0;
+  std::thread thread_;
+};
+
+TEST_F(FlightControllerTest, AGroundStationThatLooksOnChangesNoByteOfTheRecord) {
+  ASSERT_EQ(fly("0.01"), 0) << said_;
+  const std::string alone = read_text(folder_ / "out/record.mcap");
+  Viewer viewer;
+  ASSERT_EQ(fly("0.01", viewer.settings("looks")), 0) << said_;
+  EXPECT_GT(viewer.end(), 100);
+  EXPECT_TRUE(read_text(folder_ / "out/record.mcap") == alone);
+}
+
+TEST_F(FlightControllerTest, AGroundStationThatMayCommandIsNoted) {
+  Viewer viewer;
+  EXPECT_LE(fly("0.01", viewer.settings("commands")), 1) << said_;  // it may have landed in time
+  EXPECT_NE(result_.dump().find("a ground station could command"), std::string::npos);
+  EXPECT_NE(read_record(folder_ / "out").header.machine, "") << "it need not repeat";
 }
 
 // It cannot read its telemetry as fast as this comes, and what waits for it is older and older.

@@ -83,8 +83,8 @@ void ExternalController::command(int id, double param1) {
 }
 
 void ExternalController::request(int message_id) {
-  constexpr int kRequestMessage = 512;
-  command(kRequestMessage, message_id);
+  constexpr int kCommand = 512;
+  command(kCommand, message_id);
 }
 
 void prepare_folders(const ExternalSettings& settings,

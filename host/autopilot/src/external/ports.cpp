@@ -57,12 +57,13 @@ UdpPort::UdpPort(std::uint16_t number, std::string_view user)
   number_ = ntohs(own.sin_port);
 }
 
-std::vector<Bytes> UdpPort::receive() {
+std::vector<Bytes> UdpPort::receive(std::size_t most) {
   std::vector<Bytes> all;
   std::array<std::uint8_t, 65536> datagram;
   sockaddr_in from{};
   socklen_t size_of_from = sizeof from;
   for (ssize_t size = 0;
+       all.size() < most &&
        (size = ::recvfrom(socket_.get(), datagram.data(), datagram.size(), 0,
                           reinterpret_cast<sockaddr*>(&from), &size_of_from)) > 0;) {
     if (peer_ == 0) peer_ = ntohs(from.sin_port);

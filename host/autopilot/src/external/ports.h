@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -20,8 +22,8 @@ class UdpPort {
   UdpPort(std::uint16_t number, std::string_view user);
   std::uint16_t number() const { return number_; }
 
-  /// The datagrams that have arrived.
-  std::vector<Bytes> receive();
+  /// The datagrams that have arrived, but no more than so many.
+  std::vector<Bytes> receive(std::size_t most = std::numeric_limits<std::size_t>::max());
   /// To `peer`, or, if that is 0, to whoever sent the first datagram.
   void set_peer(std::uint16_t peer) { peer_ = peer; }
   void send(std::span<const std::uint8_t> bytes);

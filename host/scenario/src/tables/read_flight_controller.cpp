@@ -1,5 +1,6 @@
 #include "tables/read_flight_controller.h"
 
+#include <array>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -9,6 +10,7 @@
 
 #include <tether/autopilot/built_in.h>
 #include <tether/autopilot/external.h>
+#include <tether/autopilot/ground_station.h>
 
 namespace tether::scenario {
 namespace {
@@ -70,12 +72,20 @@ std::map<std::string, double> read_parameters(const toml::Table& table,
 FlightController read_settings(const toml::Table& table, FlightController controller) {
   constexpr toml::Range kBaud{.min = 0.0, .max = 1e9};
   constexpr toml::Range kLatency_ms{.min = 0.0, .max = 10'000.0};
+  // In the order of GroundStation.
+  constexpr std::array<std::string_view, 3> kGroundStations = {"none", "looks", "commands"};
+  constexpr std::int64_t kLeastPort = 1024, kLargestPort = 65'535;
   constexpr toml::Range kBoot_s{.min = 1.0, .max = 600.0};
   reject_keys_of_others(table, controller);
   controller.link_baud = table.number_or("link_baud", kBaud, 0.0);
   controller.link_latency = table.duration_or("link_latency_ms", kLatency_ms, Duration{0});
   controller.starts_in_air = table.boolean_or("starts_in_air", false);
   controller.parameters = read_parameters(table, controller);
+  if (table.has("ground_station"))
+    controller.ground_station =
+        static_cast<autopilot::GroundStation>(table.choice("ground_station", kGroundStations));
+  controller.ground_station_port = static_cast<std::uint16_t>(table.integer_or(
+      "ground_station_port", kLeastPort, kLargestPort, autopilot::kGroundStationPort));
   if (controller.external == nullptr) return controller;
   controller.has_fixed_ports = controller.external->has_fixed_ports;
   controller.boot = duration_from_seconds(
@@ -107,8 +117,9 @@ std::optional<FlightController> read_flight_controller(const toml::Table& uav) {
                                  "and the 'path' of {}'s build.",
                                  external->key, external->name));
   } else {
-    const toml::Table table = uav.table(kKey, {"kind", "path", "boot_s", "link_baud",
-                                               "link_latency_ms", "starts_in_air", "parameters"});
+    const toml::Table table =
+        uav.table(kKey, {"kind", "path", "boot_s", "link_baud", "link_latency_ms", "starts_in_air",
+                         "parameters", "ground_station", "ground_station_port"});
     if (!take_kind(table.choice("kind", all))) return std::nullopt;
     controller = read_settings(table, std::move(controller));
   }

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <tether/autopilot/external.h>
+#include <tether/autopilot/ground_station.h>
 #include <tether/base_testing/scratch_folder.h>
 #include <tether/base_testing/thrown_error.h>
 #include <tether/scenario/scenario.h>
@@ -68,6 +69,17 @@ TEST(ReadFlightController, IsOneThatTheUserBrings) {
   }
 }
 
+TEST(ReadFlightController, MayHaveAGroundStation) {
+  const std::string table = "[uav.flight_controller]\nkind = \"built-in\"\n";
+  EXPECT_EQ(read_one(table)->ground_station, autopilot::GroundStation::kAbsent);
+  EXPECT_EQ(read_one(table)->ground_station_port, 14550);
+  const auto looks = read_one(table + "ground_station = \"looks\"\nground_station_port = 15000");
+  EXPECT_EQ(looks->ground_station, autopilot::GroundStation::kLooks);
+  EXPECT_EQ(looks->ground_station_port, 15000);
+  EXPECT_EQ(read_one(table + "ground_station = \"commands\"")->ground_station,
+            autopilot::GroundStation::kCommands);
+}
+
 TEST(ReadFlightController, RefusesBadValuesWhereTheyAre) {
   struct Case {
     const char* text;
@@ -90,6 +102,8 @@ TEST(ReadFlightController, RefusesBadValuesWhereTheyAre) {
             "NAV_ACC_RAD"},
            {"[uav.flight_controller]\nkind = \"built-in\"\nparameters = { COM_OBL_RC_ACT = 1.5 }",
             4, "a whole number from 0 to 5"},
+           {"[uav.flight_controller]\nkind = \"built-in\"\nground_station = \"on\"", 4, "looks"},
+           {"[uav.flight_controller]\nkind = \"built-in\"\nground_station_port = 80", 4, "1024"},
            {"flight_controller = \"ardupilot\"", 2,
             "needs settings: write [uav.flight_controller] with kind = \"ardupilot\" and the "
             "'path' of ArduPilot's build"},

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -9,7 +10,8 @@
 
 namespace tether::autopilot {
 struct External;
-}
+enum class GroundStation;
+}  // namespace tether::autopilot
 
 namespace tether::scenario {
 
@@ -23,6 +25,8 @@ struct FlightController {
   bool starts_in_air = false;    ///< of the built-in one
   bool has_fixed_ports = false;  ///< flights with it cannot be parallel
   std::map<std::string, double> parameters{};
+  autopilot::GroundStation ground_station{};  ///< what one may do; first: there is none
+  std::uint16_t ground_station_port = 0;
   FileLocation at{};
 };
 
