@@ -102,6 +102,18 @@ TEST(ParallelTrials, AreAsManyAsDisturbNothing) {
   }
 }
 
+TEST(ParallelTrials, AreNoneWithAFlightControllerOfFixedPorts) {
+  scenario::Condition condition;
+  condition.policy = scenario::Policy::kConservativeBarrier;
+  condition.computers[0].clock.kind = computer::ClockKind::kScripted;
+  for (const auto& [has_fixed_ports, expected] : {std::pair{false, 4}, {true, 1}}) {
+    scenario::Scenario scenario;
+    scenario.uavs.resize(1);
+    scenario.uavs[0].flight_controller.emplace().has_fixed_ports = has_fixed_ports;
+    EXPECT_EQ(parallel_trials({&scenario, &condition, 1, "out", false}, 4), expected);
+  }
+}
+
 TEST_F(CampaignPlan, BatchesPutFreeRunningTrialsLast) {
   const auto plans = plan_trials(campaign_, "out");
   std::vector<const TrialPlan*> pointers;
