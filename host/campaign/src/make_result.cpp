@@ -5,6 +5,8 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
+#include <numeric>
 #include <set>
 
 #include <fmt/format.h>
@@ -48,6 +50,7 @@ TrialResult result_of(const scenario::Scenario& scenario, const scenario::Condit
 /// Doubts go to `warnings`.
 void check_companion(const record::Record& record, SutResult& sut, std::vector<Warning>& warnings) {
   constexpr double kAway_m = 0.2;
+  constexpr double kHardlyTurned = 0.9962;  // cosine of 5 degrees, half the angle
   const auto is_sent = [&](const auto& logged) {
     const record::AutopilotMessage& m = logged.message;
     return m.uav == sut.uav && m.to_controller && m.outcome == record::kDelivered &&
@@ -63,7 +66,7 @@ void check_companion(const record::Record& record, SutResult& sut, std::vector<W
     return;
   }
   const record::GroundTruth *first = nullptr, *last = nullptr;
-  bool has_moved = false;
+  bool has_moved = false, has_turned = false;
   for (const auto& logged : record.ground_truth) {
     if (logged.message.uav != sut.uav) continue;
     last = &logged.message;
@@ -72,13 +75,18 @@ void check_companion(const record::Record& record, SutResult& sut, std::vector<W
     for (std::size_t i = 0; i < 3; ++i)
       square_m2 += std::pow(last->p_WB_m[i] - first->p_WB_m[i], 2);
     has_moved |= square_m2 > kAway_m * kAway_m;
+    const double cosine = std::inner_product(std::begin(last->q_WB), std::end(last->q_WB),
+                                             std::begin(first->q_WB), 0.0);  // of half the angle
+    has_turned |= std::abs(cosine) < kHardlyTurned;
   }
   const auto doubt = [&](const std::string& what) {
     warnings.push_back({Consequence::kDoubtful, {}, "UAV '" + sut.uav + "'", what});
   };
   if (!has_sent) return doubt("has a flight controller to which its program sent no message");
-  if (!has_moved) doubt("never left its start, although its program says that it reached its goal");
-  if (last != nullptr && last->clearance_m && *last->clearance_m > kAway_m)
+  const bool began_in_air = first != nullptr && first->clearance_m && *first->clearance_m > kAway_m;
+  if (!has_moved && !(began_in_air && has_turned))
+    doubt("never left its start, although its program says that it reached its goal");
+  if (!began_in_air && last != nullptr && last->clearance_m && *last->clearance_m > kAway_m)
     doubt(
         fmt::format("is in the air ({:.3g} m from anything) when its program ends: what follows "
                     "was not flown",

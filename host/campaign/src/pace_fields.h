@@ -96,6 +96,7 @@ void fields(auto& io, Maybe<timing::Pace> auto& m) {
     io("median_s", m.median_s);
     io("p95_s", m.p95_s);
     io("waiting", m.waiting);
+    if (io.has("behind", m.behind > 0.0)) io("behind", m.behind);
   }
   io("shares_real_board", m.shares_real_board);
   if (io.has("shared_board", !m.shared_board.empty())) {

@@ -87,8 +87,8 @@ void fields(auto& io, Maybe<judge::ClauseVerdict> auto& m) {
   io.some("quantity", m.quantity);
   io.some("sensor", m.sensor);
   io.optional("limit", m.limit);
-  io.optional("least_without_program", m.least_without_program);
-  io.optional("median_of_program", m.median_of_program);
+  io.optional("least_without_computing", m.least_without_computing);
+  io.optional("median_of_computing", m.median_of_computing);
 }
 
 void fields(auto& io, Maybe<SutResult> auto& m) {

@@ -310,6 +310,16 @@ TEST_F(MakeResult, ACompanionHasFlownOnlyIfItHasSentSomething) {
   result = make(record, kReached);
   ASSERT_EQ(result.warnings.size(), 1u);
   EXPECT_THAT(to_line(result.warnings[0]), HasSubstr("is in the air (1.5 m from anything)"));
+  for (auto& logged : record.ground_truth) logged.message.clearance_m = 1.5;
+  EXPECT_TRUE(make(record, kReached).warnings.empty()) << "it began there";
+  record::GroundTruth& last = record.ground_truth.back().message;
+  std::ranges::copy(record.ground_truth.front().message.p_WB_m, last.p_WB_m);
+  EXPECT_EQ(make(record, kReached).warnings.size(), 1u) << "it did nothing";
+  const record::GroundTruth& first = record.ground_truth.front().message;
+  const double half_rad = 0.1;  // about z
+  last.q_WB[0] = first.q_WB[0] * std::cos(half_rad) - first.q_WB[3] * std::sin(half_rad);
+  last.q_WB[3] = first.q_WB[0] * std::sin(half_rad) + first.q_WB[3] * std::cos(half_rad);
+  EXPECT_TRUE(make(record, kReached).warnings.empty()) << "it turned";
 }
 
 TEST_F(MakeResult, TakesEverythingFromTheRecord) {

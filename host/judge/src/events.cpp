@@ -54,6 +54,16 @@ class Calls {
     });
     return samples;
   }
+  /// How long calls took that were sent in [from, to). Of calls at the same time, each counts.
+  Duration waiting(SimTime from, SimTime to) const {
+    Duration sum{0};
+    const auto sent = [&](const Interaction* i) { return times_.sent(*i); };
+    for (auto i = std::ranges::lower_bound(own_, from, {}, sent); i != own_.end(); ++i) {
+      if (sent(*i) >= to) break;
+      sum += times_.answered(**i) - sent(*i);
+    }
+    return sum;
+  }
   const Times& times() const { return times_; }
 
  private:
@@ -86,9 +96,11 @@ std::vector<Event> reaction_times(const Calls& calls, const std::string& sensor)
       calls, calls.samples(sensor, true),
       [&](const Interaction& command, SimTime sent, const Sample& image) {
         if (!command.effect_at) return;
-        events.push_back({*command.effect_at, to_seconds(*command.effect_at - image.sampled_at),
-                          Reaction{image.had_at - image.sampled_at, sent - image.had_at,
-                                   *command.effect_at - sent}});
+        const Duration until_command = sent - image.had_at;
+        events.push_back(
+            {*command.effect_at, to_seconds(*command.effect_at - image.sampled_at),
+             Reaction{image.had_at - image.sampled_at, until_command, *command.effect_at - sent,
+                      until_command - calls.waiting(image.had_at, sent)}});
       });
   return events;
 }

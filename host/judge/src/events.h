@@ -15,6 +15,7 @@ struct Reaction {
   Duration until_had;      ///< from the image's instant until the program had it
   Duration until_command;  ///< from then to its command
   Duration until_effect;   ///< from then to the effect
+  Duration computing;      ///< of `until_command`: without the waits of other calls
 };
 
 /// One value of an event quantity (mission::Quantity::is_event).

@@ -169,15 +169,17 @@ class Judge {
   // What of reaction times is the program's.
   static void divide(const std::vector<Event>& events, const mission::Unit& unit,
                      ClauseVerdict& verdict) {
-    std::vector<double> without_s, program_s;
+    std::vector<double> without_s, computing_s;
     for (const Event& event : events) {
       if (!event.reaction) return;
-      without_s.push_back(to_seconds(event.reaction->until_had + event.reaction->until_effect));
-      program_s.push_back(to_seconds(event.reaction->until_command));
+      const Reaction& reaction = *event.reaction;
+      const Duration waiting = reaction.until_command - reaction.computing;
+      without_s.push_back(to_seconds(reaction.until_had + waiting + reaction.until_effect));
+      computing_s.push_back(to_seconds(reaction.computing));
     }
-    std::ranges::sort(program_s);
-    verdict.least_without_program = unit.from_si(std::ranges::min(without_s));
-    verdict.median_of_program = unit.from_si(program_s[program_s.size() / 2]);
+    std::ranges::sort(computing_s);
+    verdict.least_without_computing = unit.from_si(std::ranges::min(without_s));
+    verdict.median_of_computing = unit.from_si(computing_s[computing_s.size() / 2]);
   }
 
   void judge_events(const Clause& clause, const Span& span, ClauseVerdict& verdict) {

@@ -216,6 +216,14 @@ TEST(Judge, ReactionsAgesAndLoops) {
   EXPECT_EQ(none.limit, 1.0);
 }
 
+TEST(Judge, ComputingOfAReactionIsWithoutWaitsForOtherCalls) {
+  Flight flight = mission();
+  flight.image(3.0, 3.2, 3.1).image(3.25, 3.45, 3.05).command(3.5, 3.6);
+  const ClauseVerdict times = flight.verdict(R"(always = "reaction_time <= 600 ms")");
+  EXPECT_NEAR(*times.least_without_computing, 400.0, 1e-9);
+  EXPECT_NEAR(*times.median_of_computing, 100.0, 1e-9);
+}
+
 TEST(Judge, ReactionsInFreeRunningAreInSt) {
   Flight flight = mission();
   flight.image(3.0, 3.2, 3.1).command(3.3, 3.4);

@@ -35,7 +35,28 @@ class Giver final : public coordinator::GivenTime {
   timing::Replay replay_;
 };
 
+bool is_library(const link::BuildPart& part) {
+  return part.name.starts_with("library ");
+}
+
 }  // namespace
+
+std::vector<Warning> of_other_arguments(const ReplayedTime& time, const record::Header& header) {
+  std::vector<Warning> warnings;
+  for (const record::SutInfo& sut : header.suts) {
+    const auto was = time.arguments.find(sut.uav);
+    if (was == time.arguments.end()) continue;
+    timing::Build is;
+    for (const record::BuildPart& part : sut.build) is.push_back({part.name, part.value});
+    std::erase_if(is, is_library);
+    if (const auto other = timing::difference(was->second, is))
+      warnings.push_back({Consequence::kDoubtful,
+                          {},
+                          fmt::format("the time of UAV '{}'", sut.uav),
+                          fmt::format("was recorded with other arguments or files ({})", *other)});
+  }
+  return warnings;
+}
 
 std::function<std::unique_ptr<coordinator::GivenTime>()> giver_of(const timing::Replay& replay) {
   return [replay] { return std::make_unique<Giver>(replay); };
@@ -70,6 +91,10 @@ ReplayedTime replayed_time(const TrialSpec& spec) {
     doubt.recorded_in = time.from.timing;
     if (doubt.subject.empty()) doubt.subject = timing.board;
     time.doubts.push_back(std::move(doubt));
+  }
+  if (setting.mode == computer::ReplayMode::kResampled) {
+    time.arguments = timing.builds;
+    for (auto& [uav, parts] : time.arguments) std::erase_if(parts, is_library);
   }
   if (setting.mode != computer::ReplayMode::kExact)
     time.warnings = timing::warnings(timing::stage_rows(timing));

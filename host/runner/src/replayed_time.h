@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -20,7 +21,13 @@ struct ReplayedTime {
   std::vector<campaign::Doubt> doubts;
   bool has_waits = false;             ///< it was wall time: what the program waited is in it
   std::vector<std::string> warnings;  ///< about the timing file, one line each
+  /// Mode "resampled": the arguments and files with which the program of a UAV was recorded.
+  std::map<std::string, timing::Build> arguments{};
 };
+
+/// The program that is given resampled times has other arguments or files than the one of which
+/// they are. Other builds and libraries are expected: it may be of another architecture.
+std::vector<Warning> of_other_arguments(const ReplayedTime& time, const record::Header& header);
 
 /// Makes what gives a SUT that time, each time from its first call on.
 std::function<std::unique_ptr<coordinator::GivenTime>()> giver_of(const timing::Replay& replay);

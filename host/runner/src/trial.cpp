@@ -169,6 +169,8 @@ campaign::TrialResult fly(const TrialSpec& spec, const StartSimulator& start,
       result.this_run.more_targets.push_back(report_of(machine.info, machine.after, result.reason));
     result.this_run.notes = conducted.notes;
     result.this_run.doubts = conducted.doubts;
+    std::ranges::move(of_other_arguments(inputs.replayed, conducted.record.header),
+                      std::back_inserter(result.warnings));
     result.this_run.loads = conducted.loads;
     add_board_loads(result.this_run);
     const auto& notes = inputs.replayed.warnings;

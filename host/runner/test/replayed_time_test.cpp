@@ -57,6 +57,23 @@ TEST_F(ReplayedTimeTest, HasTheDoubtsOfTheRunsThatWereMeasured) {
                                           {Kind::kBusyMachine, "pi", 0.2, "a.timing"}}));
 }
 
+TEST_F(ReplayedTimeTest, IsDoubtfulIfItIsOfOtherArguments) {
+  timing_.builds["uav1"] = {{"argument 1", "5"}, {"library libc.so.6", "0a"}};
+  record::Header header;
+  header.suts.resize(1);
+  header.suts[0].uav = "uav1";
+  header.suts[0].build = {{"argument 1", "5"}, {"library libc.so.6", "0b"}};
+  EXPECT_TRUE(of_other_arguments(load(), header).empty()) << "of another architecture";
+  header.suts[0].build[0].value = "60";
+  const auto warnings = of_other_arguments(load(), header);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_TRUE(warnings[0].can_change_verdict);
+  EXPECT_NE(warnings[0].message.find("argument 1 was \"5\", is \"60\""), std::string::npos);
+  spec_.condition.replay->mode = computer::ReplayMode::kScaled;
+  spec_.condition.replay->counted.clear();
+  EXPECT_TRUE(of_other_arguments(load(), header).empty()) << "it is scaled to another program";
+}
+
 TEST_F(ReplayedTimeTest, EachRunIsGivenTheTimeFromItsFirstCallOn) {
   spec_.condition.replay->mode = computer::ReplayMode::kExact;
   const std::vector<link::StageTime> first{{"a", Duration(5)}};

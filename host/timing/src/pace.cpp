@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 
 #include <tether/stats/sample_statistics.h>
 #include <tether/timing/pace.h>
@@ -11,6 +12,8 @@ namespace tether::timing {
 namespace {
 
 constexpr double kNearlyEvery = 0.95;
+constexpr double kLate = 1.5;        // periods of the camera between two images
+constexpr double kHardlyEver = 0.1;  // share of the time
 constexpr Duration kNoTime = std::chrono::microseconds(10);
 
 double quantile(std::vector<double> values, double share) {
@@ -26,11 +29,14 @@ struct Intervals {
   double cost_s = 0.0, waited_s = 0.0;  ///< since the previous image
   std::vector<double> between_s, costs_s;
   double all_costs_s = 0.0, all_waited_s = 0.0;  ///< of the images in `costs_s`
+  double behind_s = 0.0;  ///< in which images came late because the SUT computed for too long
 
   void take_image(ExecTime at) {
     ++images;
     if (previous) {
       between_s.push_back(to_seconds(at - *previous));
+      if (offered_hz && cost_s * *offered_hz > 1.0 && between_s.back() * *offered_hz > kLate)
+        behind_s += between_s.back();
       costs_s.push_back(cost_s);
       all_costs_s += cost_s;
       all_waited_s += waited_s;
@@ -139,6 +145,9 @@ Pace pace_of(const record::Record& record, const record::SutInfo& sut) {
     pace.waiting =
         intervals.all_costs_s > 0.0 ? intervals.all_waited_s / intervals.all_costs_s : 0.0;
     pace.offered_hz = intervals.offered_hz;
+    const double all_s =
+        std::accumulate(intervals.between_s.begin(), intervals.between_s.end(), 0.0);
+    pace.behind = all_s > 0.0 ? intervals.behind_s / all_s : 0.0;
   }
   return pace;
 }
@@ -219,8 +228,12 @@ std::optional<double> Pace::headroom() const {
   return 1.0 / (*offered_hz * p95_s);
 }
 
-bool Pace::keeps_up() const {
+bool Pace::reads_nearly_every() const {
   return offered_hz && read_hz >= kNearlyEvery * *offered_hz;
+}
+
+bool Pace::keeps_up() const {
+  return reads_nearly_every() && behind < kHardlyEver;
 }
 
 bool Pace::is_too_slow_for_camera() const {

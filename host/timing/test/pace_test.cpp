@@ -133,6 +133,24 @@ TEST(Pace, KeepsUpIfItReadsNearlyEveryImage) {
   EXPECT_EQ(pace_of(record)->headroom(), std::nullopt) << "a camera on demand has no rate";
 }
 
+TEST(Pace, DoesNotKeepUpIfAFewImagesTakeMuchOfTheTime) {
+  record::Record record = record_of_reads();
+  record.header.sensors[0].period = milliseconds(100);
+  const record::Interaction last = record.interactions.back().message;
+  record::Interaction& heavy = record.interactions.emplace_back().message;
+  heavy = last;
+  heavy.request_at += milliseconds(2000);
+  heavy.reply_at += milliseconds(2000);
+  heavy.sample_index += 40;
+  heavy.stages = {{"detect", milliseconds(1900)}};
+  const Pace pace = *pace_of(record);
+  EXPECT_NEAR(pace.behind, 0.5, 1e-9);
+  EXPECT_TRUE(pace.reads_nearly_every());
+  EXPECT_FALSE(pace.keeps_up());
+  heavy.stages = {{"detect", milliseconds(90)}};
+  EXPECT_TRUE(pace_of(record)->keeps_up()) << "it did not ask for images";
+}
+
 TEST(Pace, IsNotKnownWithoutSynchronisationCallsOrCamera) {
   record::Record record = record_of_reads();
   record.header.sensors.clear();

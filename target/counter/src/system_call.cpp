@@ -43,6 +43,9 @@ constexpr Number kCalls[] = {
     {288, 242, kWaits},        // accept4
     {295, 69, kWaits},         // preadv
     {299, 243, kWaits},        // recvmmsg
+    {96, 169, kReadsClock},    // gettimeofday
+    {201, -1, kReadsClock},    // time
+    {228, 113, kReadsClock},   // clock_gettime
     {57, -1, kStartsProcess},  // fork
     {58, -1, kStartsProcess},  // vfork
     {60, 93, kEndsThread},     // exit

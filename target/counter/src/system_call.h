@@ -9,6 +9,7 @@ enum class SystemCall : std::uint8_t {
   kShort,          ///< returns at once, in most cases
   kWaits,          ///< may wait for something that another thread does
   kWakes,          ///< returns how many threads it has woken
+  kReadsClock,     ///< of the machine
   kStartsThread,   ///
   kStartsProcess,  ///
   kEndsThread,     ///< never returns

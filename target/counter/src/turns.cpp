@@ -10,6 +10,9 @@ namespace {
 
 // What one thread may compute while another one could: between waking it and waiting.
 constexpr std::uint64_t kHandOver_units = 100'000 * static_cast<std::uint64_t>(kCostUnitsPerNs);
+// How often a program may ask for the machine's time between two calls of the vehicle: for logs,
+// and to measure itself. One that waits by that clock does so some thousand times in a millisecond.
+constexpr int kMostClockReadings = 1000;
 // How long a thread that was woken may take to return, on a machine with other load.
 constexpr std::chrono::seconds kLongestWaking{5};
 constexpr std::chrono::milliseconds kLook{1};
@@ -57,6 +60,9 @@ void Turns::enters_kernel(unsigned thread, SystemCall call) {
     for (const auto& [other, state] : threads_)
       if (other != thread && !is_new && state.state == State::kComputes) fail(CountFault::kThreads);
     if (call == SystemCall::kStartsProcess) fail(CountFault::kProcess);
+    if (page_.held.load() != 0) clock_readings_ = 0;
+    if (call == SystemCall::kReadsClock && ++clock_readings_ > kMostClockReadings)
+      fail(CountFault::kClock);
   }
   const bool keeps = is_watched() && !is_new && call != SystemCall::kWaits;
   own = {keeps ? State::kKeepsTurn : State::kInKernel, call, Clock::now(), arrivals_};

@@ -61,6 +61,7 @@ class Turns {
   void fail_if_parallel(std::uint64_t since_units);
   void changed();
 
+  int clock_readings_ = 0;  // since the program was held
   CountPage& page_;
   const std::chrono::milliseconds longest_short_call_;
   std::mutex mutex_;

@@ -19,6 +19,7 @@ TEST(SystemCallOf, IsKnownForBothArchitectures) {
   const CallCase cases[] = {{"read", 0, 63, 3, 0, kWaits},
                             {"write", 1, 64, 3, 0, kShort},
                             {"ppoll", 271, 73, 0, 0, kWaits},
+                            {"clock_gettime", 228, 113, 1, 0, kReadsClock},
                             {"clone of a thread", 56, 220, 0x3d0f00, 0, kStartsThread},
                             {"clone of a process", 56, 220, 0x4111, 0, kStartsProcess},
                             {"exit", 60, 93, 0, 0, kEndsThread},

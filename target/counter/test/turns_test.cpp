@@ -115,6 +115,21 @@ TEST_F(TurnsTest, AStartedProcessIsAFaultInFlightOnly) {
   EXPECT_EQ(fault(), CountFault::kNone);
 }
 
+TEST_F(TurnsTest, WaitingByTheMachinesClockIsAFault) {
+  const auto read_clock = [&](int times) {
+    for (int i = 0; i < times; ++i) turns_.enters_kernel(0, kReadsClock), leaves(0).wait();
+  };
+  read_clock(900);
+  page_.held.store(1);
+  turns_.enters_kernel(0, kWaits);
+  leaves(0).wait();
+  page_.held.store(0);
+  read_clock(1000);
+  EXPECT_EQ(fault(), CountFault::kNone) << "900 of them were before the last call";
+  read_clock(1);
+  EXPECT_EQ(fault(), CountFault::kClock);
+}
+
 TEST_F(TurnsTest, ThreadsAreFreeBeforeTheFlight) {
   page_.watched.store(0);
   turns_.leaves_kernel(1, 0);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <limits>
 #include <vector>
 
 #include <fmt/format.h>
@@ -104,18 +105,44 @@ std::optional<Costs> costs_of(const Pace& one, const Pace& other) {
   return std::nullopt;
 }
 
+/// How many times slower the clocks of `one` are, if it differs from `other` in these only, on the
+/// same machine: the least of its programs. None: not known from the clocks.
+std::optional<double> slowdown_of_clocks(const Speed& one, const Speed& other) {
+  if (one.machine != other.machine || one.target != other.target || one.boards != other.boards ||
+      one.programs.size() != other.programs.size())
+    return std::nullopt;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < one.programs.size(); ++i) {
+    const computer::Clock &a = one.programs[i].clock, &b = other.programs[i].clock;
+    const bool is_scripted = a.kind == computer::ClockKind::kScripted;
+    const bool is_scaled =
+        a.kind == computer::ClockKind::kCpu || a.kind == computer::ClockKind::kWall;
+    if (a.kind != b.kind || (!is_scripted && !is_scaled)) return std::nullopt;
+    least = std::min(least, is_scripted ? to_seconds(a.computing) / to_seconds(b.computing)
+                                        : a.factor / b.factor);
+  }
+  return least;
+}
+
+/// How many times slower `one` computes than `other`; none: not known.
+std::optional<double> slowdown_of(const Compared& one, const Compared& other) {
+  if (!differ_in_speed_only(other, one) || other.pace()->speed == one.pace()->speed)
+    return std::nullopt;
+  if (const auto known = slowdown_of_clocks(one.pace()->speed, other.pace()->speed)) return known;
+  const auto costs = costs_of(*one.pace(), *other.pace());
+  if (!costs || costs->own_s <= kSameCost * costs->other_s) return std::nullopt;
+  return costs->own_s / costs->other_s;
+}
+
 bool is_faster(const Compared& other, const Compared& missed) {
-  if (!differ_in_speed_only(other, missed) || other.pace()->speed == missed.pace()->speed)
-    return false;
-  const auto costs = costs_of(*missed.pace(), *other.pace());
-  return costs && costs->own_s > kSameCost * costs->other_s;
+  return slowdown_of(missed, other) > 1.0;
 }
 
 /// Whether a slower computer than this one, too, would have missed the goal for another reason.
+/// @pre is_faster
 bool is_much_faster(const Compared& other, const Compared& missed) {
-  const Costs costs = *costs_of(*missed.pace(), *other.pace());
   const auto offered_hz = other.pace()->offered_hz;
-  return costs.own_s >= kMuchFaster * costs.other_s ||
+  return *slowdown_of(missed, other) >= kMuchFaster ||
          (offered_hz && other.pace()->median_s * *offered_hz <= kHardlyComputes);
 }
 
@@ -178,11 +205,11 @@ const judge::ClauseVerdict* of_forgotten_task(const campaign::TrialResult& fligh
 /// A missed limit on reaction times that no program could meet; empty: there is none.
 std::string limit_without_program(const campaign::TrialResult& flight) {
   for (const judge::ClauseVerdict& clause : flight.clauses)
-    if (!clause.met && clause.limit && clause.least_without_program >= clause.limit)
+    if (!clause.met && clause.limit && clause.least_without_computing >= clause.limit)
       return fmt::format(
-          "“{}” allows {:.4g} {}, and at least {:.4g} {} pass without the program, "
-          "until it has an image and until its command has an effect",
-          clause.name, *clause.limit, clause.unit, *clause.least_without_program, clause.unit);
+          "“{}” allows {:.4g} {}, and at least {:.4g} {} pass without computing: "
+          "until the program has an image, while it waits, and until its command has an effect",
+          clause.name, *clause.limit, clause.unit, *clause.least_without_computing, clause.unit);
   return "";
 }
 
@@ -216,24 +243,20 @@ std::string possible_cause(const campaign::TrialResult& flight, const std::optio
   return "";
 }
 
-/// A missed limit on the reaction to an image, which contains its computing, while that alone takes
-/// longer; empty: there is none. Of one task of several, the computing is not known.
+/// A missed limit on the reaction to an image that computing alone is beyond, from the image to its
+/// command; empty: there is none.
 std::string limit_below_computing(const campaign::TrialResult& flight,
                                   const std::optional<Pace>& pace) {
-  if (!pace || pace->camera.empty() || pace->speed.measures_waits()) return "";
+  if (!pace || pace->speed.measures_waits()) return "";
   for (const judge::ClauseVerdict& clause : flight.clauses) {
-    if (clause.met || clause.quantiles.empty() || !clause.limit) continue;
-    const bool is_of_image = clause.quantity == "reaction_time" &&
-                             (clause.sensor.empty() || clause.sensor == pace->camera);
-    if (!is_of_image || flight.tasks.size() > 1) continue;
-    const double unit_s = clause.unit == "ms" ? 1e-3 : 1.0;
     // Without computing, it would be within the limit.
-    const bool is_of_computing =
-        clause.median_of_program && clause.least_without_program < clause.limit &&
-        std::min(unit_s * *clause.median_of_program, pace->median_s) > unit_s * *clause.limit;
-    if (is_of_computing)
-      return fmt::format("Computing an image takes {}, longer than “{}” allows",
-                         short_ms(pace->median_s), clause.name);
+    const bool is_of_computing = !clause.met && clause.limit && clause.median_of_computing &&
+                                 clause.least_without_computing < clause.limit &&
+                                 clause.median_of_computing > clause.limit;
+    if (!is_of_computing) continue;
+    const double unit_s = clause.unit == "ms" ? 1e-3 : 1.0;
+    return fmt::format("From an image to its command, computing takes {}, longer than “{}” allows",
+                       short_ms(unit_s * *clause.median_of_computing), clause.name);
   }
   return "";
 }
@@ -256,14 +279,20 @@ std::string in_each(const Compared& missed, const Find& find) {
 /// "is fast enough so far: an image costs 24 ms instead of 145 ms, 5.9 × less"
 std::string comparison_text(const Compared& other, const Compared& missed) {
   const ConditionVerdict& verdict = *other.verdict;
-  const Costs costs = *costs_of(*missed.pace(), *other.pace());
+  const auto costs = costs_of(*missed.pace(), *other.pace());
+  // A flight that ended early can have other medians.
+  std::string cost_text;
+  if (costs && costs->own_s > kSameCost * costs->other_s)
+    cost_text = fmt::format(
+        "{} {} instead of {}{}", costs->what, short_ms(costs->other_s), short_ms(costs->own_s),
+        costs->other_s > 0.0 ? fmt::format(", {} × less", fixed(costs->own_s / costs->other_s, 1))
+                             : "");
+  else
+    cost_text = fmt::format("its computer is {:.3g} × faster", *slowdown_of(missed, other));
   return (is_sufficient(verdict.ruling) ? fmt::format("is {}", name(verdict.ruling))
                                         : fmt::format("reaches it in {} of {}", verdict.reached,
                                                       counted(verdict.flown, "flight"))) +
-         fmt::format(
-             ": {} {} instead of {}{}", costs.what, short_ms(costs.other_s), short_ms(costs.own_s),
-             costs.other_s > 0.0 ? fmt::format(", {} × less", fixed(costs.own_s / costs.other_s, 1))
-                                 : "");
+         ": " + cost_text;
 }
 
 /// @pre differ_in_speed_only
@@ -281,15 +310,23 @@ MissReason reason_of(const Compared& missed, const std::vector<Compared>& all,
   for (const Compared& other : all)
     if (is_evidence(*other.verdict) && is_faster(other, missed)) faster.push_back(&other);
   // The slowest first: the least that would do.
-  std::ranges::stable_sort(faster, std::greater<>{}, [&](const Compared* other) {
-    return costs_of(*missed.pace(), *other->pace())->other_s;
-  });
-  for (const Compared& other : all)
-    if (is_evidence(*other.verdict) && is_sufficient(other.verdict->ruling) &&
-        is_faster(missed, other) &&
-        reaches_more_often(*other.verdict, *missed.verdict, comparisons))
-      return {Evidence::kSlowerReaches, other.label,
-              fmt::format("is {}", name(other.verdict->ruling))};
+  std::ranges::stable_sort(faster, {},
+                           [&](const Compared* other) { return *slowdown_of(missed, *other); });
+  const auto reaches_instead = [&](const Compared& other) {
+    return is_sufficient(other.verdict->ruling) &&
+           reaches_more_often(*other.verdict, *missed.verdict, comparisons);
+  };
+  for (const Compared& slower : all) {
+    if (!is_evidence(*slower.verdict) || !is_faster(missed, slower) || !reaches_instead(slower))
+      continue;
+    const auto other =
+        std::ranges::find_if(faster, [&](const Compared* one) { return reaches_instead(*one); });
+    if (other == faster.end())
+      return {Evidence::kSlowerReaches, slower.label,
+              fmt::format("is {}", name(slower.verdict->ruling))};
+    return {Evidence::kBothSidesReach, slower.label,
+            fmt::format("“{}” is faster, and both reach it", (*other)->label)};
+  }
   const bool is_comparable = missed.pace() && !missed.pace()->speed.stretches_unseen_waits();
   for (const Compared* other : faster)
     if (is_comparable && reaches_more_often(*other->verdict, *missed.verdict, comparisons))
@@ -327,7 +364,7 @@ MissReason reason_of(const Compared& missed, const std::vector<Compared>& all,
 
 Ruling ruling_on(Evidence evidence) {
   if (evidence <= Evidence::kMissesOwnPace) return Ruling::kNotFastEnough;
-  return evidence <= Evidence::kPossibleCause ? Ruling::kGoalMissed : Ruling::kOtherReason;
+  return evidence <= Evidence::kBothSidesReach ? Ruling::kGoalMissed : Ruling::kOtherReason;
 }
 
 }  // namespace

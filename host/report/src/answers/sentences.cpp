@@ -34,8 +34,10 @@ std::string pace_text(const Pace& pace) {
   std::string text;
   if (!pace.camera.empty()) {
     text = fmt::format("the camera is read {} times a second", rate_text(pace.read_hz));
-    if (pace.offered_hz && !pace.keeps_up())
+    if (pace.offered_hz && !pace.reads_nearly_every())
       text += fmt::format(" instead of {}", rate_text(*pace.offered_hz));
+    else if (pace.offered_hz && !pace.keeps_up())
+      text += fmt::format(", but more slowly for {} of the time", share_text(pace.behind));
     if (!pace.shared_board.empty())
       text += fmt::format(
           ", an image costs {} on “{}”, {} of it waiting for the cores that {} "
@@ -87,10 +89,13 @@ std::string missed_goals_text(const ConditionVerdict& condition) {
 constexpr std::array kMissReasons = {
     " “{condition}” {text}.",
     " {text}.",
-    " No faster condition that is otherwise the same was flown, so whether speed matters is not "
-    "known.",
+    " No condition that is clearly faster and otherwise the same was flown, so whether speed "
+    "matters "
+    "is not known.",
     " “{condition}” is faster and {text}. That does not show whether speed matters.",
     " A possible reason: {text}. Whether speed matters is not known.",
+    " “{condition}” is slower and {text}: speed matters, but more of it does not always help this "
+    "program.",
     " The reason: {text}.",
     " Computing takes no time there, so a faster computer does not help.",
     " “{condition}” misses it too, although computing takes no time there.",

@@ -73,8 +73,8 @@ TEST_F(MissReasons, AreNotKnownWithoutAReference) {
               testing::AllOf(
                   StartsWith("Goal missed: on “board” 5 of 5 flights miss the goal (not met: time "
                              "required ≤ 5 s (5 flights))"),
-                  HasSubstr("No faster condition that is otherwise the same was flown, so whether "
-                            "speed matters is not known."),
+                  HasSubstr("No condition that is clearly faster and otherwise the same was flown, "
+                            "so whether speed matters is not known."),
                   HasSubstr("To see whether speed matters, fly on a faster computer")));
   paces_[board].reset();
   EXPECT_EQ(ruling(board), Ruling::kGoalMissed);
@@ -123,10 +123,38 @@ TEST_F(MissReasons, AreSpeedIfAFasterConditionReachesTheGoal) {
   paces_[host]->speed.emulator.cpu_model = "max";
   expect_unknown("another emulated CPU");
   paces_[board]->speed.emulator.cpu_model = "max";
-  paces_[host]->median_s = 0.3;
+  program(host).clock.factor = 15.0;
   EXPECT_EQ(ruling(board), Ruling::kOtherReason) << "a slower one reaches it";
   EXPECT_THAT(answers_of({verdict()})[0].rest,
               HasSubstr("“host” is slower and is fast enough so far."));
+}
+
+TEST_F(MissReasons, AreNotOtherOnesIfAFasterAndASlowerConditionReachTheGoal) {
+  using std::chrono::milliseconds;
+  const std::size_t middle = add("middle", 0, 6, scripted(milliseconds(16)));
+  add("slow", 6, 0, scripted(milliseconds(26)));
+  add("fast", 6, 0, scripted(milliseconds(2)));
+  EXPECT_EQ(ruling(middle), Ruling::kGoalMissed);
+  EXPECT_THAT(verdict_text({verdict()}, Markup::kPlain),
+              HasSubstr("“slow” is slower and “fast” is faster, and both reach it: speed matters"));
+}
+
+// One that ended early computed other things.
+TEST_F(MissReasons, CompareFactorsOfOneMachineAndNotWhatFlightsComputed) {
+  const std::size_t board = add("board", 0, 5, measured(0.001));
+  program(board).clock.factor = 12.0;
+  add("host", 5, 0, measured(0.01));
+  EXPECT_EQ(ruling(board), Ruling::kNotFastEnough);
+  EXPECT_THAT(verdict_text({verdict()}, Markup::kPlain), HasSubstr("its computer is 12 × faster"));
+  paces_[board]->speed.machine = "there";
+  EXPECT_EQ(ruling(board), Ruling::kOtherReason) << "by what they computed, it is the faster one";
+}
+
+TEST_F(MissReasons, CompareScriptedTimesExactly) {
+  using std::chrono::microseconds;
+  const std::size_t slow = add("6 ms", 0, 5, scripted(microseconds(6000)));
+  add("5.9 ms", 5, 0, scripted(microseconds(5900)));
+  EXPECT_EQ(ruling(slow), Ruling::kNotFastEnough);
 }
 
 TEST_F(MissReasons, AreNotKnownWhereAFasterConditionMeetsSomeOfTheLimits) {
@@ -195,24 +223,23 @@ TEST_F(MissReasons, AreSpeedIfComputingAloneTakesLongerThanALimit) {
                                .quantity = "reaction_time",
                                .sensor = "camera",
                                .limit = 150.0,
-                               .least_without_program = 10.0,
-                               .median_of_program = 200.0}};
+                               .least_without_computing = 10.0,
+                               .median_of_computing = 200.0}};
   EXPECT_EQ(ruling(board), Ruling::kNotFastEnough);
   EXPECT_THAT(verdict_text({verdict()}, Markup::kPlain),
               testing::AllOf(StartsWith("Not fast enough in this flight: "),
-                             HasSubstr("Computing an image takes 200 ms, longer than “quick” "
-                                       "allows.")));
+                             HasSubstr("From an image to its command, computing takes 200 ms, "
+                                       "longer than “quick” allows.")));
   trials(board)[0].clauses[0].limit = 9.0;
   EXPECT_EQ(ruling(board), Ruling::kOtherReason) << "sensors alone take 10 ms";
   trials(board)[0].clauses[0].limit = 205.0;
   EXPECT_EQ(ruling(board), Ruling::kGoalMissed) << "sensors and waiting take the rest";
   trials(board)[0].clauses[0].limit = 15.0;
-  trials(board)[0].clauses[0].median_of_program = 10.0;
+  trials(board)[0].clauses[0].median_of_computing = 10.0;
   EXPECT_EQ(ruling(board), Ruling::kGoalMissed) << "a jitter does not contain the computing";
 }
 
-// A loop waits for its camera, another sensor has its own delay, and of several tasks one may
-// sleep.
+// A loop waits for its camera, and a program may wait between an image and its command.
 TEST_F(MissReasons, AreNotSpeedByALimitThatComputingIsNoPartOf) {
   const std::size_t board = add("board", 0, 1, measured(0.2));
   const judge::ClauseVerdict clause{.uav = "uav1",
@@ -223,20 +250,15 @@ TEST_F(MissReasons, AreNotSpeedByALimitThatComputingIsNoPartOf) {
                                     .quantity = "reaction_time",
                                     .sensor = "camera",
                                     .limit = 150.0,
-                                    .least_without_program = 10.0,
-                                    .median_of_program = 200.0};
+                                    .least_without_computing = 10.0,
+                                    .median_of_computing = 200.0};
   auto& clauses = trials(board)[0].clauses;
   clauses = {clause};
-  clauses[0].quantity = "loop_period";
-  EXPECT_EQ(ruling(board), Ruling::kGoalMissed);
+  clauses[0].median_of_computing.reset();
+  EXPECT_EQ(ruling(board), Ruling::kGoalMissed) << "a loop period";
+  clauses[0].median_of_computing = 1.0;
+  EXPECT_EQ(ruling(board), Ruling::kGoalMissed) << "it waits";
   clauses = {clause};
-  clauses[0].sensor = "range";
-  EXPECT_EQ(ruling(board), Ruling::kGoalMissed);
-  clauses = {clause};
-  trials(board)[0].tasks = {{"uav1", "look", {}, {}, "reached", ""},
-                            {"uav1", "search", {}, {}, "reached", ""}};
-  EXPECT_EQ(ruling(board), Ruling::kGoalMissed);
-  trials(board)[0].tasks.clear();
   EXPECT_EQ(ruling(board), Ruling::kNotFastEnough);
   program(board).clock.factor = 2.0;
   add("host", 0, 1, measured(0.1));
@@ -349,6 +371,7 @@ TEST_F(MissReasons, AreProbablyNotSpeedIfAFasterProgramThatReadsEveryImageMisses
   paces_[host]->read_hz = 9.0;
   EXPECT_EQ(ruling(board), Ruling::kGoalMissed) << "both may be too slow";
   paces_[host] = measured(0.03);
+  program(board).clock.factor = 6.7;
   EXPECT_EQ(ruling(board), Ruling::kGoalMissed) << "a still faster one may reach it";
 }
 
@@ -414,6 +437,7 @@ TEST_F(MissReasons, CompareOnlyWhatIsEquallyFast) {
     paces_[poor] = before;
   };
   program(poor).clock.factor = 6.0;
+  paces_[poor]->radio = "poor";
   expect_not("a slower computer");
   program(poor).board = "shared";
   expect_not("a shared board");

@@ -158,9 +158,9 @@ TEST(Verdict, SaysTheAnswerWithItsEvidenceAndWhatToDo) {
   EXPECT_EQ(verdict_text(verdicts, Markup::kMarkdown),
             "**Goal missed**: on “target” 5 of 10 flights miss the goal (not met: time required "
             "≤ 5 s (5 flights)); the camera is read 9.0 times a second instead of 30, and “detect” "
-            "takes 81 % of the computing time. No faster condition that is otherwise the same was "
-            "flown, so whether speed "
-            "matters is not known. They all begin alike, and differ only in noise and measured "
+            "takes 81 % of the computing time. No condition that is clearly faster and "
+            "otherwise the same was flown, so whether speed matters is not known. They all begin "
+            "alike, and differ only in noise and measured "
             "times.\n\n"
             "- To see whether speed matters, fly on a faster computer: `tether size turn "
             "--condition target --between 0.1,2`\n\n");

@@ -116,8 +116,9 @@ TEST(RunText, BeginsWithTheAnswer) {
   result.metrics[0].max = 3.0;
   result.outcome = campaign::Outcome::kGoalMissed;
   EXPECT_THAT(run_text(result, scratch.path("run")),
-              testing::StartsWith("Goal missed: on “host” the flight does not meet time required ≤ "
-                                  "3 s. No faster condition that is otherwise the same was flown"));
+              testing::StartsWith(
+                  "Goal missed: on “host” the flight does not meet time required ≤ "
+                  "3 s. No condition that is clearly faster and otherwise the same was flown"));
 }
 
 TEST(RunText, NamesTheRecordOnlyIfThereIsOne) {

@@ -31,6 +31,12 @@ constexpr const char* kProcessReason =
     "the program started a process, whose work is not counted. With the clock \"counted\", start "
     "processes before the program connects, and let them end; or use another clock";
 
+constexpr const char* kClockReason =
+    "the program asks for the machine's time again and again, so how much it computes depends on "
+    "the machine. With the clock \"counted\", wait by the client library (sleep_for, sleep_until, "
+    "a "
+    "read with a timeout) and ask it for the time (now), or use another clock";
+
 class CountedSource final : public TimeSource {
  public:
   explicit CountedSource(os::MappedCounts page) : page_(std::move(page)) {
@@ -67,6 +73,8 @@ class CountedSource final : public TimeSource {
         return Failure{Failure::Kind::kRefused, kThreadsReason};
       case CountFault::kProcess:
         return Failure{Failure::Kind::kRefused, kProcessReason};
+      case CountFault::kClock:
+        return Failure{Failure::Kind::kRefused, kClockReason};
     }
     return unusable("its page has the unknown fault " + std::to_string(page_->fault.load()));
   }

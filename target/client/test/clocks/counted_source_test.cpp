@@ -54,14 +54,14 @@ TEST_F(CountedSource, DoesNotCountWhileTheProgramIsHeld) {
   EXPECT_EQ(clock.now(), from_ns<ExecTime>(5));
 }
 
-TEST_F(CountedSource, IsNotCompleteIfCountsStandStillOrThreadsComputeOrAProcessWasStarted) {
+TEST_F(CountedSource, IsNotCompleteIfCountsStandStillOrAfterAFault) {
   const auto page_of_plugin = page();
   const auto source = source_of(os::map_counts(file_));
   EXPECT_EQ(page_of_plugin->watched.load(), 1u);
   EXPECT_EQ(source->complete().failure().kind, Failure::Kind::kInvalid) << "counts stand still";
   page_of_plugin->units += 1;
   EXPECT_TRUE(source->complete());
-  for (const CountFault fault : {CountFault::kThreads, CountFault::kProcess}) {
+  for (const CountFault fault : {CountFault::kThreads, CountFault::kProcess, CountFault::kClock}) {
     page_of_plugin->fault.store(static_cast<std::uint32_t>(fault));
     EXPECT_EQ(source->complete().failure().kind, Failure::Kind::kRefused);
   }

@@ -40,6 +40,7 @@ enum class CountFault : std::uint32_t {
   kNone = 0,
   kThreads = 1,  ///< two of its threads could compute at the same time
   kProcess = 2,  ///< it started a process, whose work is not counted
+  kClock = 3,    ///< it asks for the machine's time again and again, on which its work depends
 };
 
 struct CountPage {

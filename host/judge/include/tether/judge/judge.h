@@ -56,9 +56,10 @@ struct ClauseVerdict {
   std::string quantity{}, sensor{};
   /// The bound of the condition, or the time from `from` to the deadline, in `unit`.
   std::optional<double> limit{};
-  /// Of a reaction time, in `unit`: the least that passed without the program, until it had the
-  /// image and from its command until the effect; and the median of what passed in between.
-  std::optional<double> least_without_program{}, median_of_program{};
+  /// Of a reaction time, in `unit`: the least that passed without computing, until the program had
+  /// the image, while it waited, and from its command until the effect; and the median of what it
+  /// computed in between.
+  std::optional<double> least_without_computing{}, median_of_computing{};
 
   friend bool operator==(const ClauseVerdict&, const ClauseVerdict&) = default;
 };

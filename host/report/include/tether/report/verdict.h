@@ -63,6 +63,7 @@ struct MissReason {
     kNothing,          ///< no faster condition was flown, or the speeds are not known
     kFasterUndecided,  ///< another condition is faster, but does not show that speed matters
     kPossibleCause,    ///< something else happened that can be the reason: see `text`
+    kBothSidesReach,   ///< a faster and a slower one, which differ in speed only, reach it
     // Speed is probably not the reason.
     kKnownCause,          ///< what happened has nothing to do with computing: see `text`
     kInstant,             ///< computing takes no time under this condition

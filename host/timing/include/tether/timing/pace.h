@@ -80,6 +80,9 @@ struct Pace {
   /// Cost of an image: computing between two images and, on a shared board, waiting for its cores.
   double median_s = 0.0;
   double p95_s = 0.0;  ///< of 95 % of the images
+  /// Share of the time between the first image and the last in which images came late because
+  /// computing took longer than the camera's period. A median says nothing of a short, slow phase.
+  double behind = 0.0;
 
   /// Several programs share a real board: times include waiting for its cores, which is not known.
   bool shares_real_board = false;
@@ -99,7 +102,9 @@ struct Pace {
   /// How many times slower the program could compute, and still 95 % of its images would take no
   /// longer than the camera's period. None without a camera with a rate.
   std::optional<double> headroom() const;
-  /// Whether the program reads (nearly) every image that the camera offers.
+  /// Whether the program reads (nearly) every image that the camera offers: in the median.
+  bool reads_nearly_every() const;
+  /// … and (nearly) all the time.
   bool keeps_up() const;
   /// Whether it reads fewer images, because computing one takes longer than the camera's period.
   bool is_too_slow_for_camera() const;
