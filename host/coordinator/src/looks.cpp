@@ -21,7 +21,7 @@ void SutLooks::add(const ThreadStates& states, Duration represented) {
     computing += represented;
     of_all_threads += states.runnable * represented;
     if (states.runnable > 1) ++parallel_looks;
-  } else if (!states.is_halted && !states.is_served) {
+  } else if (!states.is_halted) {
     (states.is_on_disk ? on_disk : waiting) += represented;
   }
 }
@@ -34,6 +34,7 @@ void ThreadLooks::begin(ThreadsOf threads_of, WallTime now) {
 void ThreadLooks::computes(std::size_t uav, WallTime now) {
   suts_[uav].computes_since = now;
   suts_[uav].waited_before = suts_[uav].looks.waiting;
+  suts_[uav].waits = false;
 }
 
 Duration ThreadLooks::until_due(const std::function<WallTime()>& clock) const {
@@ -70,7 +71,17 @@ std::vector<ThreadLooks::Look> ThreadLooks::look(const std::function<WallTime()>
 Duration ThreadLooks::count(const Look& look) {
   Sut& sut = suts_[look.uav];
   if (!is_looked_at(look.uav) || sut.computes_since != look.since) return Duration(0);
+  // A program that waits for the client library computed before, or does so afterwards.
+  if (look.states.is_served && look.states.runnable == 0) {
+    sut.served += represented_;
+    return Duration(0);
+  }
+  const Duration before = sut.looks.waiting;
   sut.looks.add(look.states, represented_);
+  const bool waits = sut.looks.waiting > before;
+  if (waits && sut.waits) sut.looks.waiting += sut.served;
+  sut.served = Duration(0);
+  sut.waits = waits;
   return sut.looks.waiting - sut.waited_before;
 }
 

@@ -44,6 +44,8 @@ class ThreadLooks {
     bool is_hidden = false;     // ThreadsOf does not know it
     SutLooks looks{};
     Duration waited_before{0};  // of `looks`, when its last reply was sent
+    bool waits = false;         // it did so when it was looked at, but for…
+    Duration served{0};         // … looks since then that found the client library at work
   };
   bool is_looked_at(std::size_t uav) const {
     return (*times_)[uav].facts().may_wait_unseen && !suts_[uav].is_hidden &&

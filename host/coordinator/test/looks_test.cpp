@@ -62,6 +62,10 @@ TEST_F(Looks, DoNotCountWaitingForTheClientLibrary) {
   EXPECT_EQ(of_silent_sut().waiting, 0s);
   states_ = {.is_on_disk = true, .is_served = true};
   EXPECT_EQ(of_silent_sut().on_disk, 0s);
+  at_look_ = [this] { states_ = {.runnable = looked_ % 2, .is_served = true}; };
+  EXPECT_EQ(of_silent_sut().waiting, 0s) << "it computes before and afterwards";
+  at_look_ = [this] { states_ = {.is_served = looked_ % 2 == 0}; };
+  EXPECT_NEAR(to_seconds(of_silent_sut().waiting), 2.0, 0.1) << "it waits before and afterwards";
 }
 
 // It sends progress, because it computes a little between its sleeps.

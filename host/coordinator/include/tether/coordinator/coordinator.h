@@ -127,7 +127,7 @@ struct ThreadStates {
 /// What the threads of a SUT did while it should have computed: each look counts for the WT until
 /// the next one. Waiting that is an interaction is not part of it.
 struct SutLooks {
-  Duration waiting{0};         ///< none was runnable, halted, on the disk, or served
+  Duration waiting{0};         ///< none was runnable, halted, or on the disk
   Duration on_disk{0};         ///< none was runnable or halted, and one on the disk
   Duration computing{0};       ///< some were runnable
   Duration of_all_threads{0};  ///< the same, added up over them
