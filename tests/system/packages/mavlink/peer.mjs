@@ -10,9 +10,9 @@ import { readFileSync, writeFileSync } from "node:fs";
 import { Readable } from "node:stream";
 
 import mavlink from "node-mavlink";
-const { MavLinkPacketSignature, MavLinkProtocolV1, MavLinkProtocolV2, common, createMavLinkStream, minimal, standard } = mavlink;
+const { MavLinkPacketSignature, MavLinkProtocolV1, MavLinkProtocolV2, ardupilotmega, common, createMavLinkStream, minimal, standard } = mavlink;
 
-const TYPES = { ...minimal.REGISTRY, ...standard.REGISTRY, ...common.REGISTRY };
+const TYPES = { ...minimal.REGISTRY, ...standard.REGISTRY, ...common.REGISTRY, ...ardupilotmega.REGISTRY };
 
 function fail(what) {
   console.error(what);
