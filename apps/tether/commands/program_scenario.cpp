@@ -11,6 +11,7 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include <tether/autopilot/external.h>
 #include <tether/os/shell_word.h>
 #include <tether/os/text_file.h>
 #include <tether/runner/trial_folder.h>
@@ -84,6 +85,13 @@ std::string script_name(const std::vector<std::string>& command) {
   return name.substr(0, kMost);
 }
 
+std::vector<std::string> controllers() {
+  std::vector<std::string> keys = {"built-in", "none"};
+  for (const autopilot::External& external : autopilot::externals())
+    keys.emplace_back(external.key);
+  return keys;
+}
+
 /// What a place of the template gets, in TOML, and the option that decides it: "--world yard", or
 /// empty for the program itself.
 struct Value {
@@ -107,9 +115,7 @@ Values values_of(const ProgramOptions& options, const std::string& profile,
   if (command.front().find('/') != std::string::npos)
     command.front() = fs::absolute(command.front()).lexically_normal();
   const std::string controller =
-      options.flight_controller.value_or(options.px4            ? "px4"
-                                         : options.uses_library ? "none"
-                                                                : "built-in");
+      options.flight_controller.value_or(options.uses_library ? "none" : "built-in");
   const double limit_s = options.time_limit_s.value_or(kTimeLimit_s);
   const std::string place = fmt::format(
       "[{}]", fmt::join(options.position_m.value_or(std::vector<double>{0.0, 0.0, 0.1}), ", "));
@@ -130,7 +136,9 @@ Values values_of(const ProgramOptions& options, const std::string& profile,
       {"cpu_factor", number_value("--cpu-factor", options.cpu_factor.value_or(kCpuFactor))}};
   if (!options.anchors.empty())
     values["anchors"] = {toml_list(options.anchors), "--anchor " + options.anchors.front()};
-  if (options.px4) values["px4"] = {toml_text(fs::absolute(*options.px4)), "--px4 " + *options.px4};
+  if (options.controller_path)
+    values["controller_path"] = {toml_text(fs::absolute(*options.controller_path)),
+                                 "--controller-path " + *options.controller_path};
   if (options.starts_in_air) values["starts_in_air"] = {"true", "--starts-in-air"};
   return values;
 }
@@ -160,9 +168,10 @@ Options program_rows(ProgramOptions& o) {
        &o.position_m,
        {.has_commas = true, .count = 3, .usual = "0,0,0.1"}},
       {"--flight-controller", "For a program: what flies the UAV at its commands",
-       &o.flight_controller, usually(one_of({"built-in", "px4", "none"}), "built-in")},
-      {"--px4 FOLDER", "For a program: your build of PX4, which is then the flight controller",
-       &o.px4},
+       &o.flight_controller, usually(one_of(controllers()), "built-in")},
+      {"--controller-path FOLDER",
+       "For a program: your build of the flight controller, if that is PX4 or ArduPilot",
+       &o.controller_path},
       {"--starts-in-air",
        "For a program: it finds the UAV in flight, armed. Only with the built-in flight controller",
        &o.starts_in_air},
@@ -189,7 +198,7 @@ void require_no_program_options(const ProgramOptions& o) {
       {"--model", o.model.has_value()},
       {"--position", o.position_m.has_value()},
       {"--flight-controller", o.flight_controller.has_value()},
-      {"--px4", o.px4.has_value()},
+      {"--controller-path", o.controller_path.has_value()},
       {"--starts-in-air", o.starts_in_air},
       {"--time-limit", o.time_limit_s.has_value()},
       {"--anchor", !o.anchors.empty()},

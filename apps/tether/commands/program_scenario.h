@@ -18,7 +18,7 @@ namespace tether::app {
 /// What is not given has the default of `program_rows`.
 struct ProgramOptions {
   std::vector<std::string> command;  ///< what follows "--"; empty: a scenario flies
-  std::optional<std::string> world, model, flight_controller, px4;
+  std::optional<std::string> world, model, flight_controller, controller_path;
   std::optional<std::vector<double>> position_m;
   std::optional<double> time_limit_s, cpu_factor;
   std::vector<std::string> anchors;

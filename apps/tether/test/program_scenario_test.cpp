@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <tether/autopilot/external.h>
 #include <tether/base_testing/scratch_folder.h>
 #include <tether/base_testing/thrown_error.h>
 #include <tether/os/program.h>
@@ -45,7 +46,7 @@ TEST_F(ProgramScenarioTest, FliesAProgramAsItIsByDefault) {
   EXPECT_THAT(uav.sut.command, ElementsAre("python3", "fly.py"));
   EXPECT_TRUE(uav.sut.is_as_is);
   ASSERT_TRUE(uav.flight_controller);
-  EXPECT_EQ(uav.flight_controller->kind, scenario::FlightController::Kind::kBuiltIn);
+  EXPECT_EQ(uav.flight_controller->external, nullptr);
   EXPECT_FALSE(uav.flight_controller->starts_in_air);
   EXPECT_EQ(uav.profile->name, "paper_streaming");
   ASSERT_EQ(scenario.conditions.size(), 2U);
@@ -78,12 +79,14 @@ TEST_F(ProgramScenarioTest, HasWhatTheOptionsSay) {
 }
 
 TEST_F(ProgramScenarioTest, HasPx4OrNoFlightController) {
-  options_.px4 = "build/px4";
+  options_.flight_controller = "px4";
+  options_.controller_path = "build/px4";
   const auto px4 = read().uavs.at(0).flight_controller;
   ASSERT_TRUE(px4);
-  EXPECT_EQ(px4->kind, scenario::FlightController::Kind::kPx4);
+  ASSERT_NE(px4->external, nullptr);
+  EXPECT_EQ(px4->external->key, "px4");
   EXPECT_EQ(px4->path, fs::absolute("build/px4"));
-  options_.px4.reset();
+  options_.controller_path.reset();
   options_.flight_controller = "none";
   EXPECT_FALSE(read().uavs.at(0).flight_controller);
 }
@@ -129,7 +132,10 @@ TEST_F(ProgramScenarioTest, ErrorsOfTheReaderNameTheOption) {
        },
        "--position [0, 0, 1e+30]: "},
       {[](auto& o) { o.flight_controller = "px4"; }, "--flight-controller px4: "},
-      {[](auto& o) { o.px4 = "x", o.starts_in_air = true; }, "--starts-in-air: "},
+      {[](auto& o) {
+         o.flight_controller = "px4", o.controller_path = "x", o.starts_in_air = true;
+       },
+       "--starts-in-air: "},
       {[](auto& o) { o.time_limit_s = -3.0; }, "--time-limit -3: "},
       {[](auto& o) {
          o.anchors = {"a", "a"};
