@@ -113,7 +113,7 @@ struct ElfFacts {
 /// Whether notes name Go's compiler: each has three words (the sizes of name and text, a type), the
 /// name and the text, which end at a multiple of four.
 bool has_go_note(std::string_view notes) {
-  constexpr std::string_view kGo("Go\0", 4);
+  constexpr std::string_view kGo("Go\0\0", 4);
   const auto padded = [](std::size_t size) { return (size + 3) / 4 * 4; };
   for (Elf64_Nhdr head; notes.size() >= sizeof head;) {
     std::memcpy(&head, notes.data(), sizeof head);

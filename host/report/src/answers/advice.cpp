@@ -83,10 +83,41 @@ std::string uavs_advice(const ConditionVerdict& lead) {
       os::shell_word(lead.sizing->scenario), os::shell_word(lead.sizing->condition));
 }
 
+/// What a program that uses Tether's library can do, and what one that flies as it is can do.
+std::string by_program(Advice::Kind kind, bool is_as_is) {
+  using Kind = Advice::Kind;
+  struct Row {
+    Kind kind;
+    const char* with_library;
+    const char* as_is;
+  };
+  constexpr Row kRows[] = {
+      {Kind::kShowWaits,
+       "Wait by the client library (`sleep_for`, `sleep_until`, a read with a timeout), which "
+       "Tether sees. If that is not possible, fly with `clock = \"wall\"` and `concurrent = true`, "
+       "for which all time counts.",
+       "Of a program as it is, Tether sees what its processes wait for from each other and from "
+       "the UAV. Keep other waits (a device, a server) out of the flight, or fly with `clock = "
+       "\"wall\"`, for which all time counts."},
+      {Kind::kUnstretch,
+       "Wait by the client library (`sleep_for`, `sleep_until`, a read with a timeout), or fly on "
+       "the board itself, or with a factor of 1.",
+       "Fly on the board itself, or with a factor of 1."},
+      {Kind::kRunConcurrent,
+       "Let one thread compute at a time (in OpenCV, `cv::setNumThreads(1)`), or fly with `clock = "
+       "\"wall\"` and `concurrent = true`, for which threads that compute in parallel count once.",
+       "Let one thread compute at a time (in OpenCV, `cv::setNumThreads(1)`), or fly with `clock = "
+       "\"wall\"`, for which threads that compute in parallel count once."},
+      {Kind::kQuietMachine,
+       "Fly again while nothing else runs on the machine, or with a counted clock.",
+       "Fly again while nothing else runs on the machine."}};
+  const Row& row = *std::ranges::find(kRows, kind, &Row::kind);
+  return is_as_is ? row.as_is : row.with_library;
+}
+
 std::string sentence_of(const Advice& advice, const Verdict& verdict) {
   using Kind = Advice::Kind;
   const ConditionVerdict& lead = verdict.first();
-  const bool is_as_is = lead.has_as_is;
   switch (advice.kind) {
     case Kind::kMendSetUp:
       return lead.planned == 1 ? "Fix this, then fly again."
@@ -98,25 +129,13 @@ std::string sentence_of(const Advice& advice, const Verdict& verdict) {
     case Kind::kFlyRest:
       return "The campaign is not complete: `--resume` flies the rest.";
     case Kind::kShowWaits:
-      return is_as_is ? "Of a program as it is, Tether sees what its processes wait for from each "
-                        "other and from the UAV. Keep other waits (a device, a server) out of the "
-                        "flight, or fly with `clock = \"wall\"`, for which all time counts."
-                      : "Wait by the client library (`sleep_for`, `sleep_until`, a read with a "
-                        "timeout), which Tether sees. If that is not possible, fly with "
-                        "`clock = \"wall\"` and `concurrent = true`, for which all time counts.";
+    case Kind::kUnstretch:
+    case Kind::kRunConcurrent:
+    case Kind::kQuietMachine:
+      return by_program(advice.kind, lead.has_as_is);
     case Kind::kCountDisk:
       return "Keep files out of the flight, or fly with `clock = \"wall\"`, for which all time "
              "counts.";
-    case Kind::kUnstretch:
-      return is_as_is ? "Fly on the board itself, or with a factor of 1."
-                      : "Wait by the client library (`sleep_for`, `sleep_until`, a read with a "
-                        "timeout), or fly on the board itself, or with a factor of 1.";
-    case Kind::kRunConcurrent:
-      return fmt::format(
-          "Let one thread compute at a time (in OpenCV, `cv::setNumThreads(1)`), or fly with "
-          "`clock "
-          "= \"wall\"`{}, for which threads that compute in parallel count once.",
-          is_as_is ? "" : " and `concurrent = true`");
     case Kind::kReadAudit:
       return fmt::format(
           "Run `tether audit` on the records of “{}”. If the program stamps its own time, check "
@@ -143,9 +162,6 @@ std::string sentence_of(const Advice& advice, const Verdict& verdict) {
         default:
           return "Look for the reason in the program, the scenario and its limits.";
       }
-    case Kind::kQuietMachine:
-      return fmt::format("Fly again while nothing else runs on the machine{}.",
-                         is_as_is ? "" : ", or with a counted clock");
     case Kind::kVarySeeds:
       return kVarySeeds;
     case Kind::kFindThreshold:

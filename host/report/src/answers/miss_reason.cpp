@@ -301,7 +301,7 @@ MissReason compared(Evidence evidence, const Compared& other, const Compared& mi
   const auto& own = missed.pace()->speed.programs;
   const bool is_of_other_build =
       !std::ranges::equal(own, other.pace()->speed.programs, std::not_fn(is_of_other_architecture));
-  return {evidence, other.label, std::move(text), is_of_other_build};
+  return {evidence, other.label, std::move(text), is_of_other_build, other.verdict->reached};
 }
 
 MissReason reason_of(const Compared& missed, const std::vector<Compared>& all,

@@ -274,7 +274,9 @@ std::vector<Advice> advice_on(const ConditionVerdict& lead) {
         advice.push_back({Kind::kGiveValue});
       else if (lead.pace && lead.pace->speed.stretches_unseen_waits())
         advice.push_back({Kind::kUnstretch});
-      else if (lead.miss->evidence == MissReason::Evidence::kFasterUndecided)
+      else if (lead.miss->evidence == MissReason::Evidence::kBothSidesReach)
+        advice.push_back({Kind::kFindReason, lead.miss->condition});
+      else if (lead.miss->reached > 0)
         advice.push_back({Kind::kCompareMore, lead.condition});
       else
         advice.push_back({Kind::kTryFaster, lead.condition});

@@ -76,6 +76,7 @@ struct MissReason {
   std::string condition{};         ///< the other one
   std::string text{};              ///< part of a sentence: what happened, or what was compared
   bool is_of_other_build = false;  ///< the other one's programs are for another architecture
+  std::size_t reached = 0;         ///< flights of the other one that reached it
 };
 
 /// A doubt of campaign::Doubt in the flights of a condition.
