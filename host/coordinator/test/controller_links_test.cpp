@@ -16,6 +16,7 @@
 #include <gmock/gmock.h>
 
 #include <tether/base/random.h>
+#include <tether/base_testing/sanitizer.h>
 
 // Flight controllers and their companions: nothing comes from the future, is lost, comes twice or
 // out of order, on any schedule.
@@ -447,7 +448,9 @@ class InterleavingTest : public ControllerLinksTest {
 };
 
 TEST_F(InterleavingTest, KeepsTheRulesOnAnySchedule) {
-  for (std::uint64_t seed = 1; messages_ < 100'000; ++seed) {
+  // A sanitizer, which looks for other faults, is several times slower.
+  constexpr bool kIsSanitized = TETHER_ADDRESS_SANITIZER || TETHER_THREAD_SANITIZER;
+  for (std::uint64_t seed = 1; messages_ < (kIsSanitized ? 20'000 : 100'000); ++seed) {
     const Interleaving run = draw(seed);
     std::string first;
     for (std::uint64_t schedule = 1; schedule <= 2; ++schedule) {

@@ -17,7 +17,7 @@
 /// Every shipped program flies under every shipped condition and target that claims to support it.
 /// What is shipped is found when the test starts, so a new file joins by itself. Each flight is so
 /// short that few goals are reached; system_tasks flies them to their ends. At each change, all
-/// conditions and every fourth pair of a scenario and a target ("Data"); the other pairs before a
+/// conditions and every sixth pair of a scenario and a target ("Data"); the other pairs before a
 /// release ("Pairs").
 namespace tether::system_test {
 namespace {
@@ -93,7 +93,7 @@ std::vector<Flight> flights_of(const std::string& name,
     for (const bool concurrent : {false, true})
       if (!concurrent || (target.clock.kind == computer::ClockKind::kWall && !is_as_is))
         flights.push_back({name, loaded.conditions.front().name, target, concurrent, skipped,
-                           limit_s(target.clock), (i + first_pair) % 4 == 0});
+                           limit_s(target.clock), (i + first_pair) % 6 == 0});
   }
   return flights;
 }
