@@ -93,7 +93,7 @@ void prepare_folders(const ExternalSettings& settings,
   for (const std::filesystem::path& file : needed)
     if (!std::filesystem::exists(settings.build / file, none))
       throw Error(ErrorCode::kSetup, {settings.build.string()},
-                  fmt::format("has no {}. 'path' must be {}.", file.string(), what))
+                  fmt::format("has no {}. 'path' must be {}", file.string(), what))
           .about(settings.build.string());
   std::filesystem::remove_all(settings.folder, none);
   std::filesystem::create_directories(settings.folder, none);

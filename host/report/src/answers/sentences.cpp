@@ -229,7 +229,8 @@ std::string evidence_of(const ConditionVerdict& condition) {
           counted(condition.unsound, "flight"), condition.condition,
           condition.unsound == 1 ? "s" : "", condition.reason);
     case Ruling::kSetUpFailed:
-      if (condition.planned == 1) return condition.reason + ".";
+      if (condition.planned == 1)
+        return condition.reason + (condition.reason.ends_with('.') ? "" : ".");
       return fmt::format("on “{}” {} failed without a result ({}).", condition.condition,
                          counted(condition.failed, "flight"), condition.reason);
     case Ruling::kUnseen: {
