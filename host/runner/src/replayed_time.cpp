@@ -36,7 +36,7 @@ class Giver final : public coordinator::GivenTime {
 };
 
 bool is_library(const link::BuildPart& part) {
-  return part.name.starts_with("library ");
+  return part.name.starts_with(timing::kLibraryPart);
 }
 
 }  // namespace

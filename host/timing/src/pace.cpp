@@ -152,13 +152,13 @@ Pace pace_of(const record::Record& record, const record::SutInfo& sut) {
   return pace;
 }
 
-constexpr std::string_view kLibrary = "library ", kLoader = "library ld-";
+constexpr std::string_view kLoader = "library ld-";
 
 /// Without libraries.
 std::string build_of(const record::SutInfo& sut) {
   std::string all = sut.build_id;
   for (const record::BuildPart& part : sut.build)
-    if (!part.name.starts_with(kLibrary)) all += "\n" + part.name + " " + part.value;
+    if (!part.name.starts_with(kLibraryPart)) all += "\n" + part.name + " " + part.value;
   return all;
 }
 
@@ -166,8 +166,8 @@ std::string build_of(const record::SutInfo& sut) {
 std::vector<std::string> libraries_of(const record::SutInfo& sut) {
   std::vector<std::string> libraries;
   for (const record::BuildPart& part : sut.build)
-    if (part.name.starts_with(kLibrary))
-      libraries.push_back(part.name.substr(kLibrary.size()) + " " + part.value);
+    if (part.name.starts_with(kLibraryPart))
+      libraries.push_back(part.name.substr(kLibraryPart.size()) + " " + part.value);
   std::ranges::sort(libraries);
   return libraries;
 }

@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <tether/link/messages.h>
@@ -59,6 +60,9 @@ Timing of_record(const record::Record& record, const std::filesystem::path& file
 
 /// The calls of one SUT of a record, however its time was measured.
 Run run_of(const record::Record& record, const record::SutInfo& sut);
+
+/// With this, the names of a build's parts begin that are libraries: "library libc.so.6".
+inline constexpr std::string_view kLibraryPart = "library ";
 
 /// What differs between two builds, for people: "argument 4 was "30", is "60"". None if nothing
 /// does.
