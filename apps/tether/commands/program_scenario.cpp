@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <sstream>
 #include <string_view>
+#include <type_traits>
 #include <utility>
+#include <variant>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -192,21 +194,20 @@ Options program_rows(ProgramOptions& o) {
        &o.uses_library}};
 }
 
-void require_no_program_options(const ProgramOptions& o) {
-  const std::pair<const char*, bool> given[] = {
-      {"--world", o.world.has_value()},
-      {"--model", o.model.has_value()},
-      {"--position", o.position_m.has_value()},
-      {"--flight-controller", o.flight_controller.has_value()},
-      {"--controller-path", o.controller_path.has_value()},
-      {"--starts-in-air", o.starts_in_air},
-      {"--time-limit", o.time_limit_s.has_value()},
-      {"--anchor", !o.anchors.empty()},
-      {"--cpu-factor", o.cpu_factor.has_value()},
-      {"--uses-library", o.uses_library}};
-  for (const auto& [option, is_given] : given)
-    if (is_given)
-      refuse_option(option,
+void require_no_program_options(ProgramOptions o) {
+  const auto is_given = [](const auto& to) {
+    if constexpr (std::is_same_v<decltype(to), bool* const&>)
+      return *to;
+    else if constexpr (requires { to->has_value(); })
+      return to->has_value();
+    else if constexpr (requires { to->empty(); })
+      return !to->empty();
+    else
+      return false;
+  };
+  for (const Option& row : program_rows(o))
+    if (!row.allowed.follows_dashes && std::visit(is_given, row.destination))
+      refuse_option(key_of(row),
                     "is for a program that follows '--'. Change values of a scenario's file with "
                     "--set KEY=VALUE");
 }

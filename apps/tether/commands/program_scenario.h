@@ -30,7 +30,7 @@ struct ProgramOptions {
 Options program_rows(ProgramOptions& options);
 
 /// @throws Error(kUsage), about the option, if one of those is given that need a program.
-void require_no_program_options(const ProgramOptions& options);
+void require_no_program_options(ProgramOptions options);
 
 struct ProgramScenario {
   std::string name;  ///< of the script or program
