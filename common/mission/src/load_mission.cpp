@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -104,18 +105,52 @@ std::vector<Task> read_tasks(const Table& file) {
 
 // Clauses.
 
-Condition read_condition(const Table& table, std::string_view key, const std::string& anchor) {
+/// What conditions can name.
+struct Names {
+  std::string anchor;  ///< if they name none
+  std::map<std::string, std::vector<Corner>> fences;
+};
+
+std::vector<Corner> read_corners(const Table& table) {
+  constexpr toml::Range kFar_m{.min = -1e5, .max = 1e5};
+  const std::vector<double> x_m = table.numbers("x_m", kFar_m), y_m = table.numbers("y_m", kFar_m);
+  if (x_m.size() != y_m.size() || x_m.size() < 3)
+    table.fail("x_m", "and 'y_m' need a number for each corner, and three corners or more");
+  std::vector<Corner> corners;
+  for (std::size_t i = 0; i < x_m.size(); ++i) corners.push_back({x_m[i], y_m[i]});
+  return corners;
+}
+
+Names read_names(const Table& file) {
+  constexpr std::array<std::string_view, 3> kFenceKeys = {"name", "x_m", "y_m"};
+  Names names{file.text_or("anchor", ""), {}};
+  if (!file.has("fence")) return names;
+  for (const Table& table : file.tables("fence", kFenceKeys))
+    if (!names.fences.emplace(table.identifier("name"), read_corners(table)).second)
+      table.fail("name", "is that of another fence");
+  return names;
+}
+
+Condition read_condition(const Table& table, std::string_view key, const Names& names) {
   Result<Condition> condition = parse_condition(table.text(key));
   if (!condition) table.fail(key, condition.failure().message);
   if (condition->quantity->subject == Subject::kAnchor && condition->of.empty()) {
-    if (anchor.empty())
+    if (names.anchor.empty())
       table.fail(key, "does not name the anchor. Add 'of NAME', or 'anchor' at the top.");
-    condition->of = anchor;
+    condition->of = names.anchor;
+  }
+  if (condition->quantity->subject == Subject::kFence) {
+    const auto fence = names.fences.find(condition->of);
+    if (fence == names.fences.end())
+      table.fail(key,
+                 "does not name a fence of the mission. Add 'of NAME', and a [[fence]] with "
+                 "this name.");
+    condition->fence = fence->second;
   }
   return std::move(condition).value();
 }
 
-void read_kind(const Table& table, const std::string& anchor, Clause& clause) {
+void read_kind(const Table& table, const Names& names, Clause& clause) {
   constexpr std::array<std::pair<std::string_view, Kind>, 3> kKinds = {
       {{"always", Kind::kAlways}, {"never", Kind::kNever}, {"eventually", Kind::kEventually}}};
   for (const auto& [key, kind] : kKinds) {
@@ -123,7 +158,7 @@ void read_kind(const Table& table, const std::string& anchor, Clause& clause) {
     if (clause.condition)
       table.fail(key, "is a second condition. Write a [[clause]] for each condition.");
     clause.kind = kind;
-    clause.condition = read_condition(table, key, anchor);
+    clause.condition = read_condition(table, key, names);
     if (clause.condition->share < 1.0 && kind != Kind::kAlways)
       table.fail(key, "has a share, which needs 'always'");
     if (clause.condition->quantity->is_event && kind == Kind::kEventually)
@@ -200,11 +235,11 @@ std::string text_of(const Clause& clause, const std::vector<Task>& tasks) {
   return text;
 }
 
-Clause read_clause(const Table& table, const std::string& anchor, const std::vector<Task>& tasks) {
+Clause read_clause(const Table& table, const Names& names, const std::vector<Task>& tasks) {
   table.require_keys_in(kClauseKeys);
   Clause clause;
   clause.where = table.where();
-  read_kind(table, anchor, clause);
+  read_kind(table, names, clause);
   read_times(table, clause);
   read_span(table, tasks, clause);
   read_ends_flight(table, clause);
@@ -254,10 +289,10 @@ Mission read_mission(const Table& file) {
                 "the mission has no task; add at least one [[task]]");
   mission.tasks = read_tasks(file);
   add_deadlines(file, mission);
-  const std::string anchor = file.text_or("anchor", "");
+  const Names names = read_names(file);
   if (file.has("clause"))
     for (const Table& table : file.tables("clause"))
-      mission.clauses.push_back(read_clause(table, anchor, mission.tasks));
+      mission.clauses.push_back(read_clause(table, names, mission.tasks));
   require_unique_names(mission);
   require_no_contradictions(mission);
   return mission;

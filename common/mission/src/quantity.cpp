@@ -35,6 +35,8 @@ std::span<const Quantity> quantities() {
                "distance from the UAV to the anchor's centre, height included"},
       Quantity{"from_start", Dimension::kLength, Subject::kNone, false,
                "horizontal distance from the UAV to where it began"},
+      Quantity{"inside", Dimension::kLength, Subject::kFence, false,
+               "horizontal distance from the UAV to the nearest edge of a fence; negative outside"},
       Quantity{"x", Dimension::kLength, Subject::kNone, false, "x of the UAV in the world"},
       Quantity{"y", Dimension::kLength, Subject::kNone, false, "y of the UAV in the world"},
       Quantity{"altitude", Dimension::kLength, Subject::kNone, false, "z of the UAV in the world"},

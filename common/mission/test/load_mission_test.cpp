@@ -168,5 +168,21 @@ TEST(Mission, ShippedFilesAreGood) {
     EXPECT_FALSE(load_mission(entry.path()).tasks.empty());
 }
 
+TEST(LoadMission, AFenceIsNamedByItsClauses) {
+  const std::string fence = "[[fence]]\nname = \"yard\"\nx_m = [0, 10, 10]\ny_m = [0, 0, 8]\n";
+  const std::string clause = "[[clause]]\nalways = \"inside of yard >= 0.5 m\"\n";
+  const Mission mission = parsed(kTasks + fence + clause);
+  const Condition& condition = *mission.clauses.at(0).condition;
+  ASSERT_EQ(condition.fence.size(), 3u);
+  EXPECT_EQ(condition.fence[2].x_m, 10.0);
+  EXPECT_EQ(condition.fence[2].y_m, 8.0);
+  EXPECT_EQ(mission.clauses[0].name, "mission: always inside of yard >= 0.5 m");
+  expect_refusal(kTasks + clause, 12, "always");
+  expect_refusal(kTasks + fence + "[[clause]]\nalways = \"inside >= 0.5 m\"\n", 16, "always");
+  expect_refusal(kTasks + fence + fence, 16, "name");
+  expect_refusal(kTasks + "[[fence]]\nname = \"yard\"\nx_m = [0, 1]\ny_m = [0, 1]\n", 13, "x_m");
+  expect_refusal(kTasks + "[[fence]]\nname = \"yard\"\nx_m = [0, 1, 2]\ny_m = [0, 1]\n", 13, "x_m");
+}
+
 }  // namespace
 }  // namespace tether::mission

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include <tether/base/units.h>
 #include <tether/uav/math.h>
@@ -52,11 +53,35 @@ std::optional<double> clearance(const GroundTruth& truth, const record::Anchor&)
   return truth.clearance_m;
 }
 
+/// Of a point from the line between two corners.
+double distance_m(const mission::Corner& a, const mission::Corner& b, double x_m, double y_m) {
+  const double along_x = b.x_m - a.x_m, along_y = b.y_m - a.y_m;
+  const double length2 = along_x * along_x + along_y * along_y;
+  const double way = along_x * (x_m - a.x_m) + along_y * (y_m - a.y_m);
+  const double share = length2 > 0.0 ? std::clamp(way / length2, 0.0, 1.0) : 0.0;
+  return std::hypot(a.x_m + share * along_x - x_m, a.y_m + share * along_y - y_m);
+}
+
+// Inside is where a ray to the east crosses an odd number of edges.
+double inside(const GroundTruth& truth, const std::vector<mission::Corner>& fence) {
+  const double x_m = truth.p_WB_m[0], y_m = truth.p_WB_m[1];
+  double nearest_m = std::numeric_limits<double>::infinity();
+  bool is_inside = false;
+  for (std::size_t i = 0; i < fence.size(); ++i) {
+    const mission::Corner &a = fence[i], &b = fence[(i + 1) % fence.size()];
+    nearest_m = std::min(nearest_m, distance_m(a, b, x_m, y_m));
+    if ((a.y_m > y_m) == (b.y_m > y_m)) continue;
+    is_inside ^= x_m < a.x_m + (y_m - a.y_m) / (b.y_m - a.y_m) * (b.x_m - a.x_m);
+  }
+  return is_inside ? nearest_m : -nearest_m;
+}
+
 struct Source {
   std::string_view quantity;
   Value value;
 };
-// One entry for each of mission::quantities() that is not of events, the battery or the radio.
+// One entry for each of mission::quantities() that is not of events, fences, the battery or the
+// radio.
 constexpr std::array kSources = {
     Source{"bearing_error", bearing_error},
     Source{"distance", distance},
@@ -77,7 +102,9 @@ std::optional<Reference> Reference::of(const mission::Condition& condition,
   if (condition.quantity->subject != mission::Subject::kAnchor) {
     record::Anchor here;
     std::ranges::copy(start.p_WB_m, here.p_WA_m);
-    return Reference(here, record);
+    Reference reference(here, record);
+    reference.fence_ = condition.fence;
+    return reference;
   }
   const auto& anchors = record.header.anchors;
   const auto anchor = std::ranges::find(anchors, condition.of, &record::Anchor::name);
@@ -86,6 +113,7 @@ std::optional<Reference> Reference::of(const mission::Condition& condition,
 
 std::optional<double> value_of(const mission::Quantity& quantity, const GroundTruth& truth,
                                const Reference& reference) {
+  if (quantity.subject == mission::Subject::kFence) return inside(truth, reference.fence());
   const auto* source = std::ranges::find(kSources, quantity.name, &Source::quantity);
   const auto value = source->value(truth, reference.at(truth.at));
   return value && std::isfinite(*value) ? value : std::nullopt;

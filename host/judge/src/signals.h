@@ -12,7 +12,7 @@
 
 namespace tether::judge {
 
-/// What a quantity is about: the track of an anchor, or where the UAV began.
+/// What a quantity is about: the track of an anchor, a fence, or where the UAV began.
 class Reference : public record::AnchorTrack {
  public:
   /// None: the record has no such anchor. `record` must outlive the reference.
@@ -20,8 +20,11 @@ class Reference : public record::AnchorTrack {
                                      const record::GroundTruth& start,
                                      const record::Record& record);
 
+  const std::vector<mission::Corner>& fence() const { return fence_; }
+
  private:
   using AnchorTrack::AnchorTrack;
+  std::vector<mission::Corner> fence_;
 };
 
 /// In SI units; none if the ground truth does not have it. @pre quantity.is_of_truth()

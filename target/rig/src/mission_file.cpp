@@ -86,7 +86,7 @@ std::vector<Table> read_common(const Table& file) {
     TaskSpec spec;
     common.push_back(file.table("vision", names_of(vision_fields(spec), {})));
   }
-  Names any = {"task", "vision", "clause"};
+  Names any = {"task", "vision", "clause", "fence"};
   for (const TaskKind& kind : task_kinds()) {
     TaskSpec spec;
     spec.options = kind.defaults;

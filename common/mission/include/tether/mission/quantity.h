@@ -26,6 +26,7 @@ enum class Subject {
   kNone,
   kAnchor,  ///< required, but for the file's own `anchor`
   kSensor,  ///< optional
+  kFence,   ///< required
 };
 
 struct Quantity {
