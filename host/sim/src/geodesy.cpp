@@ -64,7 +64,65 @@ struct Horizon {
   }
 };
 
+// IGRF-14 at 2025.0 [nT], Schmidt semi-normalised, by degree and order, and the radius that it
+// refers to.
+constexpr int kDegrees = 5;
+constexpr double kReferenceRadius_m = 6'371'200.0;
+constexpr double kG_nT[kDegrees][kDegrees + 1] = {{-29350.0, -1410.3},
+                                                  {-2556.2, 2950.9, 1648.7},
+                                                  {1360.9, -2404.2, 1243.8, 453.4},
+                                                  {894.7, 799.6, 55.8, -281.1, 12.0},
+                                                  {-232.9, 369.0, 187.2, -138.7, -141.9, 20.9}};
+constexpr double kH_nT[kDegrees][kDegrees + 1] = {{0.0, 4545.5},
+                                                  {0.0, -3133.6, -814.2},
+                                                  {0.0, -56.9, 237.6, -549.6},
+                                                  {0.0, 278.6, -134.0, 212.0, -375.4},
+                                                  {0.0, 45.3, 220.0, -122.9, 42.9, 106.2}};
+
 }  // namespace
+
+// The gradient of the potential, in the directions up, south and east of the sphere. `p` are
+// Schmidt's functions of the colatitude and `dp` their derivatives, each from those of the two
+// degrees below.
+Vec3 earth_field_T(const Place& place) {
+  constexpr double kTesla = 1e-9;
+  constexpr double kNextToThePole = 1e-9;
+  const Horizon horizon(place);
+  const Vec3 p_E = horizon.origin;
+  const double r_m = norm(p_E);
+  const double c = p_E.z / r_m;
+  const double s = std::max(std::hypot(p_E.x, p_E.y) / r_m, kNextToThePole);
+  const double longitude_rad = rad_from_deg(place.longitude_deg);
+  double p[kDegrees + 1][kDegrees + 1] = {{1.0}}, dp[kDegrees + 1][kDegrees + 1] = {};
+  double up = 0.0, south = 0.0, east = 0.0;
+  for (int n = 1; n <= kDegrees; ++n) {
+    const double share = std::pow(kReferenceRadius_m / r_m, n + 2);
+    for (int m = 0; m <= n; ++m) {
+      if (m == n) {
+        const double f = n == 1 ? 1.0 : std::sqrt((2.0 * n - 1.0) / (2.0 * n));
+        p[n][n] = f * s * p[n - 1][n - 1];
+        dp[n][n] = f * (c * p[n - 1][n - 1] + s * dp[n - 1][n - 1]);
+      } else {
+        const double below = n == 1 ? 0.0 : std::sqrt((n - 1.0) * (n - 1.0) - m * m);
+        const double f = std::sqrt(1.0 * n * n - m * m);
+        const int last = std::max(n - 2, 0);  // of degree 1, it counts 0 times
+        p[n][m] = ((2.0 * n - 1.0) * c * p[n - 1][m] - below * p[last][m]) / f;
+        dp[n][m] =
+            ((2.0 * n - 1.0) * (c * dp[n - 1][m] - s * p[n - 1][m]) - below * dp[last][m]) / f;
+      }
+      const double cosine = std::cos(m * longitude_rad), sine = std::sin(m * longitude_rad);
+      const double g = kG_nT[n - 1][m], h = kH_nT[n - 1][m];
+      up += share * (n + 1) * (g * cosine + h * sine) * p[n][m];
+      south -= share * (g * cosine + h * sine) * dp[n][m];
+      east += share * m * (g * sine - h * cosine) * p[n][m] / s;
+    }
+  }
+  const Vec3 up_E = (1.0 / r_m) * p_E;
+  const Vec3 south_E = cross(horizon.east, up_E);
+  const Vec3 field_E = up * up_E + south * south_E + east * horizon.east;
+  return kTesla *
+         Vec3{dot(field_E, horizon.east), dot(field_E, horizon.north), dot(field_E, horizon.up)};
+}
 
 Vec3 to_enu(const Place& place, const Vec3& v_W) {
   const double s = std::sin(place.heading_rad), c = std::cos(place.heading_rad);

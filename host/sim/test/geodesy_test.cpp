@@ -8,6 +8,7 @@
 namespace tether::sim {
 namespace {
 
+constexpr double kDegrees = 180.0 / std::numbers::pi;
 constexpr double kMetresPerDegree = 111'320.0;  // of longitude, at the equator
 
 TEST(Geodesy, TheOriginIsThePlace) {
@@ -66,6 +67,24 @@ TEST(Geodesy, APointComesBackFromItsPlaceOnEarth) {
     EXPECT_LT(norm(back - p_W), 1e-6);
     EXPECT_LT(norm(from_enu(place, to_enu(place, p_W)) - p_W), 1e-9);
   }
+}
+
+// Declination and inclination [deg] and strength [T] by the whole model, of degree 13, in 2025.
+TEST(Geodesy, TheMagneticFieldIsThatOfThePlace) {
+  struct Case {
+    double latitude_deg, longitude_deg, declination_deg, inclination_deg, strength_T;
+  };
+  for (const Case& at :
+       {Case{47.4, 8.5, 3.4, 63.6, 48.5e-6}, Case{40.0, -105.3, 7.8, 65.7, 51.4e-6},
+        Case{-33.9, 151.2, 12.8, -64.3, 57.0e-6}}) {
+    const uav::Vec3 field_T = earth_field_T({at.latitude_deg, at.longitude_deg, 0.0, 0.0});
+    const double across_T = std::hypot(field_T.x, field_T.y);
+    EXPECT_NEAR(std::atan2(field_T.x, field_T.y) * kDegrees, at.declination_deg, 2.0);
+    EXPECT_NEAR(std::atan2(-field_T.z, across_T) * kDegrees, at.inclination_deg, 1.5);
+    EXPECT_NEAR(norm(field_T), at.strength_T, 1e-6);
+  }
+  const uav::Vec3 at_pole_T = earth_field_T({90.0, 0.0, 0.0, 0.0});
+  EXPECT_LT(norm(at_pole_T - earth_field_T({90.0 - 1e-7, 0.0, 0.0, 0.0})), 1e-12);
 }
 
 }  // namespace

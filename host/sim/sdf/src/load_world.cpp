@@ -11,6 +11,7 @@
 #include <utility>
 
 #include <tether/sim/bodies.h>
+#include <tether/sim/geodesy.h>
 #include <tether/sim_sdf/load_world.h>
 
 namespace tether::sim {
@@ -123,7 +124,11 @@ void read_earth_and_air(const SdfSource& source, const sdf::World& sdf_world, Wo
     if (frame && frame->Get<std::string>() != "ENU")
       refuse(source, frame, "is not ENU, the only orientation that Tether knows");
   }
-  world.magnetic_field_T = to_vec3(sdf_world.MagneticField());
+  const sdf::ElementPtr field = sdf_world.Element()->FindElement("magnetic_field");
+  const bool is_given = field && field->GetExplicitlySetInFile();
+  world.magnetic_field_T = world.place && !is_given
+                               ? from_enu(*world.place, earth_field_T(*world.place))
+                               : to_vec3(sdf_world.MagneticField());
   world.wind.v_WA_m_s = to_vec3(sdf_world.WindLinearVelocity());
 }
 
@@ -231,10 +236,6 @@ void warn_of_earth(const World& world, const WarningSink& warn) {
     warn_first(uav::SensorKind::kNavSat,
                "measures latitude and longitude, but the world has no <spherical_coordinates>: it "
                "is put near Zurich, as PX4's worlds are");
-  if (world.place && world.magnetic_field_T == World{}.magnetic_field_T)
-    warn_first(uav::SensorKind::kMagnetometer,
-               "measures SDF's default field, which is not that of the world's place. Give the "
-               "world the <magnetic_field> of its <spherical_coordinates>");
 }
 
 }  // namespace

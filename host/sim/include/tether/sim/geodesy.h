@@ -22,6 +22,10 @@ uav::Vec3 to_enu(const Place& place, const uav::Vec3& v_W);
 /// The inverse.
 uav::Vec3 from_enu(const Place& place, const uav::Vec3& v_ENU);
 
+/// Earth's magnetic field at a place, along its east, north and up [T]: IGRF-14 at 2025.0 (Alken et
+/// al., IAGA Division V, 2024), up to degree 5. Near the surface within some 1 µT.
+uav::Vec3 earth_field_T(const Place& place);
+
 /// The pressure of the standard atmosphere [Pa] at an altitude above sea level, up to 11 km
 /// (ISO 2533:1975), and the altitude of a pressure [m].
 double standard_pressure_pa(double altitude_m);

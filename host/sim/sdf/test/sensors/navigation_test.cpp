@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <tether/sim/geodesy.h>
+
 namespace tether::sim {
 namespace {
 
@@ -101,21 +103,14 @@ TEST_F(SdfNavigation, AReceiverNeedsAPlace) {
   EXPECT_THAT(warnings(with_sensor("magnetometer", "<magnetometer/>")), IsEmpty());
 }
 
-TEST_F(SdfNavigation, AMagnetometerNeedsTheFieldOfThePlace) {
-  const auto model = folder_.write("compass.sdf", with_sensor("magnetometer", "<magnetometer/>"));
-  const auto warnings_in = [&](const std::string& inside) {
-    std::vector<std::string> lines;
-    for (const Warning& warning :
-         load({folder_.write("earth.sdf", world_sdf(inside)), {{"a", model, {}, 0.0}}, {}})
-             .warnings)
-      lines.push_back(to_line(warning));
-    return lines;
-  };
+// The world's x points north.
+TEST_F(SdfNavigation, AWorldWithoutAFieldHasThatOfItsPlace) {
   const std::string place =
-      "<spherical_coordinates><latitude_deg>60</latitude_deg>"
-      "<longitude_deg>10</longitude_deg></spherical_coordinates>";
-  EXPECT_THAT(warnings_in(place), Contains(HasSubstr("SDF's default field")));
-  EXPECT_THAT(warnings_in(place + "<magnetic_field>1e-6 1.5e-5 -5e-5</magnetic_field>"), IsEmpty());
+      "<spherical_coordinates><latitude_deg>60</latitude_deg><longitude_deg>10</longitude_deg>"
+      "<heading_deg>-90</heading_deg></spherical_coordinates>";
+  const World world = load({folder_.write("earth.sdf", world_sdf(place)), {}, {}}).world;
+  EXPECT_EQ(to_enu(*world.place, world.magnetic_field_T), earth_field_T(*world.place));
+  EXPECT_NEAR(world.magnetic_field_T.x, 15e-6, 2e-6);
 }
 
 TEST_F(SdfNavigation, ReadsThePlaceAndTheFieldOfTheWorld) {
