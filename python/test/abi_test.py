@@ -24,7 +24,7 @@ STRUCTS = {
 NOT_BOUND = re.compile("tether_(subscri|unsubscribe|on_|scan$|client_abi_version|status_name|image_copy|"
                        "read_camera_into|find_)")  # fmt: skip
 C_TYPES = {ctypes.c_int32: "int32_t", ctypes.c_int64: "int64_t", ctypes.c_uint32: "uint32_t",
-           ctypes.c_uint64: "uint64_t", ctypes.c_double: "double"}  # fmt: skip
+           ctypes.c_uint64: "uint64_t", ctypes.c_double: "double", ctypes.c_char_p: "const char*"}  # fmt: skip
 
 
 def compiled(source, *options):
@@ -79,6 +79,7 @@ class Abi(unittest.TestCase):
         for c_name, sample in STRUCTS.items():
             self.expect_same(c_name, _abi.struct_of(sample))
         self.expect_same("tether_setpoint", _abi.CSetpoint)
+        self.expect_same("tether_joint", _abi.CJoint)
 
     def test_a_planted_difference_is_found(self):
         class Swapped(ctypes.Structure):
@@ -94,7 +95,8 @@ class Abi(unittest.TestCase):
     def test_no_struct_and_no_function_is_left_out(self):
         defined = set(re.findall(r"typedef struct (\w+) \{", declared()))
         self.assertGreater(len(defined), 15)
-        self.assertEqual({name for name in defined if not NOT_BOUND.match(name)}, {*STRUCTS, "tether_setpoint"})
+        bound = {*STRUCTS, "tether_setpoint", "tether_joint"}
+        self.assertEqual({name for name in defined if not NOT_BOUND.match(name)}, bound)
         symbols = {line.split("@")[0] for line in (ROOT / "abi/symbols.txt").read_text().splitlines()
                    if line.startswith("tether_")}
         self.assertEqual(set(functions()), symbols)
@@ -113,7 +115,7 @@ class Abi(unittest.TestCase):
             **dict(zip(("TETHER_READ_NEXT", "TETHER_READ_LATEST", "TETHER_READ_IF_AVAILABLE"), range(3))),
         }
         bits = ("POSITION", "VELOCITY", "ACCELERATION", "YAW", "YAW_RATE", "ATTITUDE", "BODY_RATES", "THRUST",
-                "ROTOR_SPEEDS")
+                "ROTOR_SPEEDS", "JOINTS")
         constants |= {f"TETHER_{name}": bit for name, bit in zip(bits, _abi.MASK.values(), strict=True)}
         checks = [f'_Static_assert({name} == {int(value)}, "{name}");' for name, value in constants.items()]
         self.assertEqual(compiled("\n".join(checks), "-fsyntax-only").stderr, "")

@@ -16,6 +16,7 @@ class Setpoints(unittest.TestCase):
             Setpoint(q_WB=(1, 0, 0, 0), thrust_N=5): 32 + 128,
             Setpoint(rates_B_rad_s=(0, 0, 1), thrust_N=5): 64 + 128,
             Setpoint(rotor_speeds_rad_s=(1, 2, 3, 4)): 256,
+            Setpoint(joints_rad=(0.5, -1)): 512,
         }.items():
             self.assertEqual(_abi.to_c(setpoint).mask, mask, setpoint)
 
@@ -25,6 +26,8 @@ class Setpoints(unittest.TestCase):
         self.assertEqual((c.yaw_rad, c.in_heading, c.after_ns), (0.5, 1, 100_000_000))
         c = _abi.to_c(Setpoint(rotor_speeds_rad_s=[10, 20, 30]))
         self.assertEqual((c.rotors, *c.rotor_speeds_rad_s), (3, 10, 20, 30, 0, 0, 0, 0, 0))
+        c = _abi.to_c(Setpoint(joints_rad=(0.5, -1)))
+        self.assertEqual((c.joints, *c.joints_rad), (2, 0.5, -1, 0, 0))
 
     def test_vectors_of_another_length_are_refused(self):
         for wrong in (Setpoint(position_W_m=(1, 2)), Setpoint(q_WB=(1, 0, 0)), Setpoint(rotor_speeds_rad_s=range(9))):

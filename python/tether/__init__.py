@@ -11,16 +11,17 @@ from .errors import (
 from .record import Record
 from .runs import Campaign, Metric, Result, campaign, program, run
 from .samples import (
-    Anchor, BarometerSample, BatterySample, CameraModel, FlightLimits, ImageInfo, ImuSample, Kind, MagnetometerSample,
-    Message, NavSatSample, OdometrySample, Pose, Quat, RangeSample, ScanModel, Setpoint, Shape, Vec3,
+    Anchor, BarometerSample, BatterySample, CameraModel, FlightLimits, ImageInfo, ImuSample, Joint, Kind,
+    MagnetometerSample, Message, NavSatSample, OdometrySample, Pose, Quat, RangeSample, ScanModel, Setpoint, Shape,
+    Vec3,
 )  # fmt: skip
 from .vehicle import Image, Scan, Sensor, Vehicle, connect, library_version
 
 __all__ = [
     "Anchor", "BarometerSample", "BatterySample", "CameraModel", "Campaign", "Code", "CommandError",
-    "DisconnectedError", "FlightLimits", "Image", "ImageInfo", "ImuSample", "InternalError", "InvalidError", "Kind",
-    "MagnetometerSample", "Message", "Metric", "NavSatSample", "NoAnswerError", "NoMemoryError", "OdometrySample",
-    "Pose", "ProtocolError", "Quat", "RangeSample", "Record", "RecordError", "RefusedError", "Result", "RunEndedError",
-    "Scan", "ScanModel", "Sensor", "Setpoint", "Shape", "TetherError", "Vec3", "Vehicle", "campaign", "connect",
-    "library_version", "program", "run",
+    "DisconnectedError", "FlightLimits", "Image", "ImageInfo", "ImuSample", "InternalError", "InvalidError", "Joint",
+    "Kind", "MagnetometerSample", "Message", "Metric", "NavSatSample", "NoAnswerError", "NoMemoryError",
+    "OdometrySample", "Pose", "ProtocolError", "Quat", "RangeSample", "Record", "RecordError", "RefusedError", "Result",
+    "RunEndedError", "Scan", "ScanModel", "Sensor", "Setpoint", "Shape", "TetherError", "Vec3", "Vehicle", "campaign",
+    "connect", "library_version", "program", "run",
 ]  # fmt: skip

@@ -42,8 +42,9 @@ FUNCTIONS = {
     "tether_image_labels": "pp", "tether_read_together": "ippzp",
     "tether_read_imu": "ipsipz", "tether_read_range": "ipsipz", "tether_read_navsat": "ipsipz",
     "tether_read_magnetometer": "ipsipz", "tether_read_barometer": "ipsipz", "tether_read_odometry": "ipsipz",
-    "tether_read_scan": "ipsipzpz", "tether_read_battery": "ippz",
+    "tether_read_scan": "ipsipzpz", "tether_read_scan_intensities": "ipsippzpz", "tether_read_battery": "ippz",
     "tether_command_velocity": "ipdddd", "tether_follow": "ippzz", "tether_get_flight_limits": "ippz",
+    "tether_joint_count": "zp", "tether_get_joint": "ipzpz", "tether_sensor_joints": "zp",
     "tether_now": "lp", "tether_sleep_for": "ipl", "tether_sleep_until": "ipl",
     "tether_annotate": "ipss", "tether_stage_begin": "ips", "tether_stage_end": "ip", "tether_finish": "ipiss",
     "tether_peer_count": "zp", "tether_peer_at": "spz", "tether_send": "ipspz", "tether_receive": "iplp",
@@ -144,12 +145,34 @@ class CSetpoint(ctypes.Structure):
         ("acceleration_m_s2", struct_of(samples.Vec3)), ("yaw_rad", ctypes.c_double),
         ("yaw_rate_rad_s", ctypes.c_double), ("q_WB", struct_of(samples.Quat)),
         ("rates_B_rad_s", struct_of(samples.Vec3)), ("thrust_N", ctypes.c_double),
-        ("rotor_speeds_rad_s", ctypes.c_double * 8), ("rotors", ctypes.c_uint32), ("reserved", ctypes.c_uint32),
+        ("rotor_speeds_rad_s", ctypes.c_double * 8), ("rotors", ctypes.c_uint32), ("joints", ctypes.c_uint32),
+        ("joints_rad", ctypes.c_double * 4),
     ]  # fmt: skip
 
 
 MASK = {"position_W_m": 1, "velocity_m_s": 2, "acceleration_m_s2": 4, "yaw_rad": 8, "yaw_rate_rad_s": 16, "q_WB": 32,
-        "rates_B_rad_s": 64, "thrust_N": 128, "rotor_speeds_rad_s": 256}  # fmt: skip
+        "rates_B_rad_s": 64, "thrust_N": 128, "rotor_speeds_rad_s": 256, "joints_rad": 512}  # fmt: skip
+COUNTS = {"rotor_speeds_rad_s": "rotors", "joints_rad": "joints"}
+
+
+class CJoint(ctypes.Structure):
+    """A joint of the UAV."""
+
+    _fields_ = [
+        ("name", ctypes.c_char_p), ("point_B_m", struct_of(samples.Vec3)), ("axis_B", struct_of(samples.Vec3)),
+        ("min_rad", ctypes.c_double), ("max_rad", ctypes.c_double), ("max_rate_rad_s", ctypes.c_double),
+    ]  # fmt: skip
+
+
+def joints_of(handle: int | None) -> tuple[samples.Joint, ...]:
+    """The joints of a vehicle."""
+    joints = []
+    for index in range(lib.tether_joint_count(handle)):
+        c = CJoint()
+        check(lib.tether_get_joint(handle, index, ctypes.byref(c), ctypes.sizeof(c)))
+        point, axis = (to_python(samples.Vec3, vector) for vector in (c.point_B_m, c.axis_B))
+        joints.append(samples.Joint(c.name.decode(), point, axis, c.min_rad, c.max_rad, c.max_rate_rad_s))
+    return tuple(joints)
 
 
 def to_c(setpoint: samples.Setpoint) -> CSetpoint:
@@ -160,9 +183,9 @@ def to_c(setpoint: samples.Setpoint) -> CSetpoint:
         if field.name not in MASK or value is None:
             continue
         c.mask |= MASK[field.name]
-        if field.name == "rotor_speeds_rad_s":
-            c.rotors = len(value)
-            c.rotor_speeds_rad_s[:c.rotors] = [float(speed) for speed in value]
+        if field.name in COUNTS:
+            setattr(c, COUNTS[field.name], len(value))
+            getattr(c, field.name)[:len(value)] = [float(number) for number in value]
         elif isinstance(member := getattr(c, field.name), ctypes.Structure):
             if len(value) != len(member._fields_):
                 raise ValueError(f"{field.name} has {len(value)} numbers instead of {len(member._fields_)}")

@@ -240,6 +240,22 @@ class FlightLimits:
 
 
 @dataclass(frozen=True)
+class Joint:
+    """A joint that turns a part of the UAV with its sensors, as those of a gimbal do: a chain from the body outwards.
+
+    `point_B_m` and `axis_B` are of its axis while all joints are at 0. It turns with `max_rate_rad_s` to the angle that
+    was commanded last.
+    """
+
+    name: str
+    point_B_m: Vec3
+    axis_B: Vec3
+    min_rad: float
+    max_rad: float
+    max_rate_rad_s: float
+
+
+@dataclass(frozen=True)
 class Anchor:
     """An object of the world that the SUT knows beforehand; it has to find out where it is.
 
@@ -269,7 +285,8 @@ class Setpoint:
 
     One of: position, also with velocity, or with velocity and acceleration; velocity, also with acceleration;
     acceleration; attitude and thrust; body rates and thrust; rotor speeds. The first three can have a yaw or a yaw
-    rate; without, the UAV keeps its yaw. Positions are p_WB. With `in_heading`, velocity and acceleration are in H,
+    rate; without, the UAV keeps its yaw. Each can have the angles of all joints; these alone change nothing of the
+    flight. Positions are p_WB. With `in_heading`, velocity and acceleration are in H,
     else in W. Yaw is counter-clockwise from east. The thrust is that of all rotors together, along the body's z.
     `after_s`: from when the command takes effect; of the first set-point of a trajectory 0, then increasing.
     """
@@ -283,5 +300,6 @@ class Setpoint:
     rates_B_rad_s: Sequence[float] | None = None
     thrust_N: float | None = None
     rotor_speeds_rad_s: Sequence[float] | None = None
+    joints_rad: Sequence[float] | None = None
     in_heading: bool = False
     after_s: float = 0.0

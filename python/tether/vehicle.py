@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
-from ._abi import check, filled, is_there, lib, struct_of, to_c, to_ns, to_python
+from ._abi import check, filled, is_there, joints_of, lib, struct_of, to_c, to_ns, to_python
 from .errors import InvalidError, need
 from .samples import (
     CAMERAS, Anchor, BarometerSample, BatterySample, CameraModel, FlightLimits, ImageInfo, ImuSample, Kind,
@@ -107,12 +107,14 @@ def _required(array: T | None, what: str) -> T:
 class Scan:
     """Of a lidar: ST of its last column [ns], number, and distances [m], rows x columns of Sensor.scan_model.
 
-    +inf: nothing in reach; -inf: too close.
+    +inf: nothing in reach; -inf: too close. Of each distance, `intensities` has how much of the light comes back; None:
+    the simulator does not know.
     """
 
     sampled_at_ns: int
     index: int
     ranges_m: "NDArray[np.float32]"
+    intensities: "NDArray[np.float32] | None" = None
 
 
 class Sensor(Generic[T]):
@@ -128,8 +130,10 @@ class Sensor(Generic[T]):
         self.rate_hz: float = lib.tether_sensor_rate_hz(pointer)
         mounting = struct_of(Pose)()
         check(lib.tether_sensor_mounting(pointer, ctypes.byref(mounting)))
-        #: X_BS. A camera's S looks along its x.
+        #: X_BS, while joints are at 0. A camera's S looks along its x.
         self.mounting = to_python(Pose, mounting)
+        #: How many of the UAV's joints turn it: the first ones.
+        self.joints: int = lib.tether_sensor_joints(pointer)
         #: Optics, of a camera of any kind.
         self.camera_model = filled(CameraModel, lib.tether_sensor_camera_model, pointer) if self.kind in CAMERAS else None
         #: Rays, of a lidar.
@@ -157,9 +161,12 @@ class Sensor(Generic[T]):
         return filled(sample, getattr(lib, name), handle, self._name, mode)
 
     def _read_scan(self, handle: int | None, rays: ScanModel, mode: int) -> Scan | None:
-        ranges_m = need("numpy", "python3-numpy", "scans").empty((rays.rows, rays.columns), "float32")
-        info = filled(ScanInfo, lib.tether_read_scan, handle, self._name, mode, ranges_m.ctypes.data, ranges_m.size)
-        return None if info is None else Scan(info.sampled_at_ns, info.index, ranges_m)
+        np = need("numpy", "python3-numpy", "scans")
+        ranges_m, intensities = (np.empty((rays.rows, rays.columns), "float32") for _ in range(2))
+        info = filled(ScanInfo, lib.tether_read_scan_intensities, handle, self._name, mode, ranges_m.ctypes.data,
+                      intensities.ctypes.data, ranges_m.size)
+        known = None if np.isnan(intensities).any() else intensities
+        return None if info is None else Scan(info.sampled_at_ns, info.index, ranges_m, known)
 
     def read(self) -> T:
         """The newest measurement that was not read, or with a queue the oldest; waits if there is none.
@@ -234,6 +241,8 @@ class Vehicle:
         limits = filled(FlightLimits, lib.tether_get_flight_limits, handle)
         assert limits is not None
         self.flight_limits = limits
+        #: The joints that it can command.
+        self.joints = joints_of(handle)
 
     def __enter__(self) -> "Vehicle":
         return self

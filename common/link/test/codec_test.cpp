@@ -123,6 +123,8 @@ TEST(Codec, WelcomeFieldByField) {
                                {"down", {}, 10.0, uav::RangeProperties{0.1, 8.0}}};
   welcome.catalogue.anchors = {{"box", uav::AnchorShape::kCylinder, {1, 2, 3}, {0, 0.5, 1}}};
   welcome.free_running = true;
+  welcome.catalogue.sensors[0].joints = 1;
+  welcome.catalogue.limits.joints = {{"pitch", {1, 2, 3}, {0, 1, 0}, -0.5, 1.5, 2.0}};
   welcome.start = from_ns<ExecTime>(77);
   welcome.real_time_factor = 0.3;
 
@@ -131,8 +133,10 @@ TEST(Codec, WelcomeFieldByField) {
   EXPECT_EQ(got.real_time_factor, 0.3);
   EXPECT_EQ(got.start, welcome.start);
   ASSERT_EQ(got.catalogue.sensors.size(), 3u);
-  const auto& [name, X_BS, rate_hz, properties, own_stamps] = got.catalogue.sensors[0];
+  const auto& [name, X_BS, rate_hz, properties, own_stamps, joints] = got.catalogue.sensors[0];
   EXPECT_TRUE(own_stamps);
+  EXPECT_EQ(joints, 1u);
+  EXPECT_EQ(got.catalogue.limits.joints, welcome.catalogue.limits.joints);
   EXPECT_EQ(std::tie(name, X_BS, rate_hz),
             std::tuple("camera", welcome.catalogue.sensors[0].X_BS, 30.0));
   const auto& [width, height, fx, fy, cx, cy, k1, k2, k3, p1, p2] =

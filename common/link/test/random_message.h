@@ -100,6 +100,7 @@ class RandomMessage {
     out.peers.assign(random_.bits() % 3, text());
     out.real_time_factor = 0.01 + random_.uniform();
     if (coin()) out.catalogue.battery_capacity_C = std::abs(number());
+    if (coin()) out.catalogue.limits.joints = {{"yaw", vec3(), {0, 0, 1}, -1.0, 2.0, 3.0}};
     if (coin()) out.catalogue.limits = {random_.bits() % 9, std::abs(number()), 20.0};
     return out;
   }
@@ -124,6 +125,10 @@ class RandomMessage {
       out.back().setpoint.yaw_rad = number();
     }
     if (coin()) out.back().setpoint = {.mask = uav::kRotorSpeeds, .rotor_speeds_rad_s = {1, 2, 3}};
+    if (coin()) {
+      out.back().setpoint.mask |= uav::kJoints;
+      out.back().setpoint.joints_rad = {number(), 0.5};
+    }
     return out;
   }
 

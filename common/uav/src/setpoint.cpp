@@ -67,7 +67,14 @@ std::optional<VelocityCommand> heading_velocity(const Setpoint& setpoint) {
                          setpoint.has(kYawRate) ? setpoint.yaw_rate_rad_s : 0.0};
 }
 
+Setpoint flight_of(Setpoint setpoint) {
+  setpoint.mask &= static_cast<std::uint16_t>(~kJoints);
+  setpoint.joints_rad.clear();
+  return setpoint;
+}
+
 std::optional<SetpointLevel> level_of(std::uint16_t mask) {
+  mask &= static_cast<std::uint16_t>(~kJoints);
   for (const auto& [fields, level] : kCombinations) {
     const bool may_turn = level <= SetpointLevel::kAcceleration && (mask & kAnyYaw) != kAnyYaw;
     if (mask == fields || (may_turn && (mask & ~kAnyYaw) == fields)) return level;
@@ -82,8 +89,8 @@ Setpoint without_ignored(const Setpoint& setpoint) {
     if (!setpoint.has(field)) value = {};
   };
   each_field(cleaned, clean);
-  if (level_of(setpoint.mask) > SetpointLevel::kAcceleration)
-    cleaned.in_heading = defaults.in_heading;
+  const auto level = level_of(setpoint.mask);
+  if (!level || level > SetpointLevel::kAcceleration) cleaned.in_heading = defaults.in_heading;
   return cleaned;
 }
 
@@ -109,10 +116,10 @@ Setpoint setpoint_on_loss(LossAction action, const Setpoint& last, const Vec3& p
 
 std::string complaint_about(const Setpoint& setpoint) {
   const auto level = level_of(setpoint.mask);
-  if (!level)
+  if (!level && setpoint.mask != kJoints)
     return "the mask " + std::to_string(setpoint.mask) +
            " makes no sense. Give a position, a velocity, an acceleration, an attitude with a "
-           "thrust, body rates with a thrust, or rotor speeds";
+           "thrust, body rates with a thrust, rotor speeds, or joints";
   std::string wrong;
   each_field(setpoint, [&](SetpointField field, const auto& value, double most, const char* name) {
     if (wrong.empty() && setpoint.has(field) && !(largest(value) <= most))
@@ -129,9 +136,29 @@ std::string complaint_about(const Setpoint& setpoint) {
   return {};
 }
 
+namespace {
+
+std::string complaint_about_joints(const std::vector<double>& angles_rad,
+                                   const std::vector<Joint>& joints) {
+  if (angles_rad.size() != joints.size())
+    return "there are " + std::to_string(angles_rad.size()) + " joint angles, but the UAV has " +
+           std::to_string(joints.size()) + " joints";
+  for (std::size_t i = 0; i < joints.size(); ++i)
+    if (angles_rad[i] < joints[i].min_rad || angles_rad[i] > joints[i].max_rad)
+      return "the angle of joint '" + joints[i].name + "' is not within " +
+             number(joints[i].min_rad) + ".." + number(joints[i].max_rad) + " rad";
+  return {};
+}
+
+}  // namespace
+
 std::string complaint_about(const Setpoint& setpoint, const FlightLimits& limits) {
   if (std::string wrong = complaint_about(setpoint); !wrong.empty()) return wrong;
-  if (limits.rotors == 0 && !heading_velocity(setpoint))
+  if (setpoint.has(kJoints)) {
+    std::string wrong = complaint_about_joints(setpoint.joints_rad, limits.joints);
+    if (!wrong.empty() || !setpoint.flies()) return wrong;
+  }
+  if (limits.rotors == 0 && !heading_velocity(flight_of(setpoint)))
     return "the simulator or vehicle only takes velocities in the heading frame";
   if (setpoint.has(kThrust) && setpoint.thrust_N > limits.max_thrust_N)
     return "the thrust is above " + number(limits.max_thrust_N) + " N, the most of the rotors";
@@ -156,6 +183,8 @@ std::string complaint_about(std::span<const TimedSetpoint> trajectory,
     std::string wrong;
     if (after < earliest || after > kLongestTrajectory || (i == 0 && after != Duration(0)))
       wrong = "the times must begin with 0, increase, and be at most an hour";
+    else if (count > 1 && setpoint.mask == kJoints)
+      wrong = "joints alone must be a command of their own";
     else
       wrong = limits ? complaint_about(setpoint, *limits) : complaint_about(setpoint);
     if (!wrong.empty())

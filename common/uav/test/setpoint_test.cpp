@@ -19,7 +19,7 @@ TEST(Setpoint, OnlyTheDocumentedMasksHaveALevel) {
   int known = 0;
   for (int mask = 0; mask < 1024; ++mask)
     known += level_of(static_cast<std::uint16_t>(mask)).has_value();
-  EXPECT_EQ(known, 6 * 3 + 3);
+  EXPECT_EQ(known, 2 * (6 * 3 + 3)) << "each with and without joints";
   EXPECT_EQ(level_of(kPosition | kVelocity | kYaw), SetpointLevel::kPosition);
   EXPECT_EQ(level_of(kVelocity | kAcceleration | kYawRate), SetpointLevel::kVelocity);
   EXPECT_EQ(level_of(kAcceleration), SetpointLevel::kAcceleration);
@@ -53,6 +53,31 @@ TEST(Setpoint, RefusesWhatNoUavCanFlyAndNamesIt) {
       {{.mask = kRotorSpeeds, .rotor_speeds_rad_s = {1, 1, 801, 1}}, "above 800 rad/s"}};
   for (const auto& [setpoint, complaint] : bad)
     EXPECT_THAT(complaint_about(setpoint, kLimits), HasSubstr(complaint));
+}
+
+TEST(Setpoint, OfJointsHasAnAngleWithinTheLimitsForEachOfThem) {
+  using testing::HasSubstr;
+  FlightLimits limits;  // of a vehicle that only takes velocities in the heading frame
+  limits.joints = {{"yaw", {}, {0, 0, 1}, -1, 1, 2}, {"pitch", {}, {0, 1, 0}, -0.5, 1.5, 2}};
+  const auto complaint = [&](std::uint16_t mask, std::vector<double> angles_rad) {
+    return complaint_about({.mask = mask, .joints_rad = std::move(angles_rad)}, limits);
+  };
+  EXPECT_EQ(complaint(kJoints, {-1, 1.5}), "");
+  EXPECT_EQ(complaint(kJoints | kVelocity, {0, 0}), "");
+  EXPECT_THAT(complaint(kJoints, {0}), HasSubstr("1 joint angles, but the UAV has 2"));
+  EXPECT_THAT(complaint(kJoints, {0, kNan}), HasSubstr("joint angles is not finite"));
+  EXPECT_THAT(complaint(kJoints, {0, 1.6}), HasSubstr("'pitch' is not within -0.5..1.5 rad"));
+  EXPECT_THAT(complaint(kJoints | kPosition, {0, 0}), HasSubstr("world frame"));
+  const Setpoint alone{.mask = kJoints, .joints_rad = {0, 0}};
+  EXPECT_FALSE(alone.flies());
+  EXPECT_EQ(level_of(alone.mask), std::nullopt);
+  EXPECT_EQ(without_ignored(alone), alone);
+  const std::vector<TimedSetpoint> two = {{Duration(0), {}}, {Duration(1), alone}};
+  EXPECT_THAT(complaint_about(two, limits), HasSubstr("a command of their own"));
+  EXPECT_EQ(heading_velocity({.mask = kVelocity | kJoints, .joints_rad = {0, 0}}), std::nullopt)
+      << "the joints would be lost";
+  EXPECT_NE(heading_velocity(flight_of({.mask = kVelocity | kJoints, .joints_rad = {0, 0}})),
+            std::nullopt);
 }
 
 TEST(Setpoint, IgnoresFieldsOutsideTheMask) {

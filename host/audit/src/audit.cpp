@@ -25,6 +25,7 @@ Verdict audit(const record::Record& record) {
   check_consistency(record, grid, report);
   check_setpoints(record, report);
   check_motion(record, report);
+  check_joints(record, report);
   check_contacts(record, report);
   check_radio(record, grid, report);
   check_autopilot(record, report);

@@ -68,6 +68,9 @@ void check_consistency(const record::Record& record, const Boundaries& grid, Rep
 /// fly; no command is beyond what a SUT can give.
 void check_motion(const record::Record& record, Report& report);
 
+/// Rule 0 for any policy: the joints of UAVs turn as they were commanded.
+void check_joints(const record::Record& record, Report& report);
+
 /// Rule 0 for any policy: contacts agree with the ground truth around them, and a UAV that comes to
 /// touch something has one.
 void check_contacts(const record::Record& record, Report& report);

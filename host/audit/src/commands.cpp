@@ -1,6 +1,7 @@
 #include "checks.h"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <string>
@@ -39,6 +40,15 @@ bool has_setpoints(const Interaction& m) {
   return m.command.has_value() || !m.setpoints.empty();
 }
 
+// Joints alone leave what is flown.
+constexpr std::uint64_t kJointsAlone = 512;
+bool flies(const Interaction& command) {
+  return command.setpoints.empty() || command.setpoints.front().mask != kJointsAlone;
+}
+bool flies(const CommandEffect& effect) {
+  return !effect.setpoint || effect.setpoint->mask != kJointsAlone;
+}
+
 // Of a set-point that is a velocity in the heading frame.
 std::optional<record::VelocityCommand> velocity_of(const record::Setpoint& m) {
   constexpr std::uint64_t kVelocity = 2, kYawRate = 16;
@@ -68,13 +78,16 @@ std::tuple<std::uint64_t, bool, std::uint64_t> place_of(const Logged<CommandEffe
   return {m.sequence, !m.loss.empty(), m.index};
 }
 
-// Rule 2: a SUT's set-points take effect in the order in which it gave them, each once. Leaves the
-// effects sorted by sequence.
+// Rule 2: a SUT's set-points take effect in the order in which it gave them, each once; those of
+// joints alone for themselves. Leaves the effects sorted by sequence.
 void check_effect_order(Row& row, Report& report) {
-  for (std::size_t i = 1; i < row.effects.size(); ++i) {
-    if (place_of(row.effects[i]) <= place_of(row.effects[i - 1]))
-      report.add(2, *row.effects[i], "effect after that of command {} of the same SUT",
-                 sequence_of(row.effects[i - 1]));
+  const Logged<CommandEffect>* last[2] = {};
+  for (const Logged<CommandEffect>* effect : row.effects) {
+    const Logged<CommandEffect>*& before = last[flies(effect->message) ? 1 : 0];
+    if (before != nullptr && place_of(effect) <= place_of(before))
+      report.add(2, *effect, "effect after that of command {} of the same SUT",
+                 sequence_of(before));
+    before = effect;
   }
   std::ranges::stable_sort(row.effects, {}, place_of);
 }
@@ -121,9 +134,12 @@ std::vector<Later> later_of(const Interaction& command, const record::SutInfo& s
 // when they are due, unless the next command arrives before. The next one after the last command of
 // the record may be one whose reply was still held.
 void check_later(const Row& row, const Boundaries& grid, bool finished, Wide end, Report& report) {
-  for (auto command = row.commands.begin(); command != row.commands.end(); ++command) {
+  std::vector<const Logged<Interaction>*> flown;
+  std::ranges::copy_if(row.commands, std::back_inserter(flown),
+                       [](const auto* command) { return flies(command->message); });
+  for (auto command = flown.begin(); command != flown.end(); ++command) {
     const auto next = std::next(command);
-    const bool is_last = next == row.commands.end();
+    const bool is_last = next == flown.end();
     for (const auto& [at, place] : later_of((*command)->message, *row.info)) {
       const Wide due = grid.at_or_after(at);
       const bool is_due = is_last ? finished && due < end

@@ -90,8 +90,8 @@ const record::SensorInfo* find_camera(const record::Record& record, const std::s
 // The SUT's last estimate, with the ground truth of its image.
 struct Look {
   Estimate estimate;
-  const record::SensorInfo* camera = nullptr;
-  record::Anchor anchor;  // when the image was taken
+  record::SensorInfo camera;  // as it was mounted
+  record::Anchor anchor;      // when the image was taken
   const record::Interaction* read = nullptr;
   uav::Pose X_WB;
 };
@@ -122,18 +122,18 @@ MetricOutcome with_last_look(const scenario::Metric& metric, const record::Recor
   const SimTime taken_at = read->sample_state_at.value_or(*read->sampled_at);
   const auto X_WB = pose_at(record, metric.uav, taken_at);
   if (!X_WB) return no_ground_truth(metric);
-  return evaluate(
-      {*estimate, camera, record::AnchorTrack(*anchor, record).at(taken_at), read, *X_WB});
+  return evaluate({*estimate, mounted_at(*camera, record, taken_at),
+                   record::AnchorTrack(*anchor, record).at(taken_at), read, *X_WB});
 }
 
 MetricOutcome bearing_error_of(const Look& look) {
-  const auto roi = roi_in_image(*look.read, *look.camera, look.X_WB, look.anchor);
+  const auto roi = roi_in_image(*look.read, look.camera, look.X_WB, look.anchor);
   if (!roi) {
     return missing(fmt::format(
         "'{}' {} the camera '{}' in the image of the estimate", look.anchor.name,
-        look.read->seen_anchors ? "is hidden from" : "is not in front of", look.camera->name));
+        look.read->seen_anchors ? "is hidden from" : "is not in front of", look.camera.name));
   }
-  const double true_rad = roi_bearing_rad(*look.camera, *roi);
+  const double true_rad = roi_bearing_rad(look.camera, *roi);
   return {deg_from_rad(std::abs(wrap_angle_rad(look.estimate.bearing_rad - true_rad))), ""};
 }
 
@@ -142,7 +142,7 @@ MetricOutcome distance_error_of(const Look& look) {
     return missing(
         fmt::format("the SUT's last estimate of '{}' has no distance", look.anchor.name));
   }
-  const uav::Vec3 p_WC = camera_pose(*look.camera, look.X_WB).p;
+  const uav::Vec3 p_WC = camera_pose(look.camera, look.X_WB).p;
   const double true_m = std::hypot(look.anchor.p_WA_m[0] - p_WC.x, look.anchor.p_WA_m[1] - p_WC.y);
   return {std::abs(*look.estimate.distance_m - true_m), ""};
 }

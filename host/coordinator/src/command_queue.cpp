@@ -83,6 +83,14 @@ std::optional<CommandEffect> CommandQueue::pop_due(SimTime st) {
   if (arrives && (!goes_on || precedes(commands_.back(), next_.first()))) {
     const std::size_t uav = commands_.back().uav;
     Flight& flight = flights_[uav];
+    // Joints alone leave what is flown, and do not show that the link is there.
+    if (const auto& first = commands_.back().setpoints.front(); !first.setpoint.flies()) {
+      CommandEffect effect{
+          .uav = uav, .sequence = commands_.back().sequence, .setpoint = first.setpoint};
+      --flight.waiting;
+      commands_.pop_back();
+      return effect;
+    }
     if (flight.flown)
       flight.waiting -= std::max(flight.flown->setpoints.size(), flight.next) - flight.next;
     flight.flown = std::move(commands_.back());

@@ -80,6 +80,7 @@ std::vector<Session> make_sessions(const sim::Simulator& simulator, const RunOpt
     sessions[i].latency_key = {options.seed,
                                random_stream(world.uavs[i].name, "command", "latency")};
     if (simulator.takes_setpoints()) sessions[i].limits = flight_limits(world.uavs[i].airframe);
+    sessions[i].limits.joints = world.uavs[i].joints;
     sessions[i].cores = options.uavs[i].cores;
     if (options.uavs[i].given_time) sessions[i].replay = options.uavs[i].given_time();
     sessions[i].recorded_image_at.resize(world.uavs[i].sensors.size());

@@ -14,7 +14,9 @@ namespace tether::coordinator {
 
 namespace {
 
-record::CameraInfo describe(const uav::Pose& X_BS, const uav::CameraProperties& camera) {
+record::CameraInfo describe(const uav::SensorDescription& sensor,
+                            const uav::CameraProperties& camera) {
+  const uav::Pose& X_BS = sensor.X_BS;
   const uav::CameraModel& model = camera.model;
   return {.p_BS_m = {X_BS.p.x, X_BS.p.y, X_BS.p.z},
           .q_BS = {X_BS.q.w, X_BS.q.x, X_BS.q.y, X_BS.q.z},
@@ -31,7 +33,8 @@ record::CameraInfo describe(const uav::Pose& X_BS, const uav::CameraProperties& 
           .p2 = model.p2,
           .depth_min_m = camera.min_m,
           .depth_max_m = camera.max_m,
-          .models = camera.models};
+          .models = camera.models,
+          .joints = sensor.joints};
 }
 
 std::string text_of(const ControllerOptions& controller, const std::string& version) {
@@ -62,8 +65,16 @@ record::SensorInfo describe(const std::string& uav, const uav::SensorDescription
                    .lost_probability = driver.lost_probability,
                    .repeated_probability = driver.repeated_probability};
   if (const auto* camera = std::get_if<uav::CameraProperties>(&sensor.properties))
-    info.camera = describe(sensor.X_BS, *camera);
+    info.camera = describe(sensor, *camera);
   return info;
+}
+
+std::vector<record::JointInfo> describe(const std::vector<uav::Joint>& joints) {
+  std::vector<record::JointInfo> infos;
+  for (const auto& [name, p, axis, min_rad, max_rad, rate_rad_s] : joints)
+    infos.push_back(
+        {name, {p.x, p.y, p.z}, {axis.x, axis.y, axis.z}, min_rad, max_rad, rate_rad_s});
+  return infos;
 }
 
 record::Anchor describe(const sim::World& world, const sim::PlacedAnchor& placed) {
@@ -149,6 +160,7 @@ record::Header Coordinator::Impl::make_header() const {
          .max_angular_acceleration_rad_s2 = max_angular_acceleration_rad_s2(uav.airframe),
          .energy = describe_energy(uav, world().gravity_m_s2)});
     record::SutInfo& sut = header.suts.back();
+    sut.joints = describe(uav.joints);
     sut.as_is = options_.uavs[session.uav].as_is;
     if (!std::holds_alternative<uav::ConstantDelay>(session.command_latency))
       sut.max_command_latency = uav::bounds(session.command_latency).second;

@@ -45,6 +45,7 @@ record::Setpoint record_of(const uav::Setpoint& setpoint) {
   d.yaw_rate_rad_s = setpoint.yaw_rate_rad_s;
   d.thrust_N = setpoint.thrust_N;
   d.rotor_speeds_rad_s = setpoint.rotor_speeds_rad_s;
+  d.joints_rad = setpoint.joints_rad;
   return d;
 }
 

@@ -74,7 +74,8 @@ void RunLog::ground_truth(const std::string& uav, const sim::GroundTruth& truth,
                                     .q_WB = {q.w, q.x, q.y, q.z},
                                     .v_WB_m_s = {v.x, v.y, v.z},
                                     .w_WB_B_rad_s = {w.x, w.y, w.z},
-                                    .clearance_m = clearance_m});
+                                    .clearance_m = clearance_m,
+                                    .joints_rad = truth.joints_rad});
   if (clearance) take_clearance(truth.at, uav, *clearance);
 }
 

@@ -74,8 +74,9 @@ TEST_F(CoordinatorTest, SendsACatalogueWithTheCamerasOfTheRecord) {
   EXPECT_EQ(welcome.catalogue.anchors.size(), 1u);
   EXPECT_FALSE(welcome.free_running);
 
-  const auto& [name, X_BS, rate_hz, properties, own_stamps] = welcome.catalogue.sensors.at(kCamera);
-  EXPECT_FALSE(own_stamps);
+  const auto& [name, X_BS, rate_hz, properties, own_stamps, joints] =
+      welcome.catalogue.sensors.at(kCamera);
+  EXPECT_FALSE(own_stamps || joints > 0);
   const uav::CameraModel& model = std::get<uav::CameraProperties>(properties).model;
   const auto& camera = recorder_.header.sensors.at(kCamera).camera;
   ASSERT_TRUE(camera);

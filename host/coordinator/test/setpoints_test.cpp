@@ -62,6 +62,24 @@ TEST_F(SetpointsTest, TheVehicleFollowsATrajectoryUntilTheNextCommand) {
   EXPECT_EQ(recorder_.interactions[0].setpoints.size(), 4u);
 }
 
+// They neither end a trajectory nor show that the link is there.
+TEST_F(SetpointsTest, JointsAloneLeaveWhatIsFlown) {
+  sim::World world = sim::make_fake_world(1, milliseconds(1));
+  world.uavs[0].joints = {{"pitch", {}, {0, 1, 0}, -1, 1, 2}};
+  make(std::move(world));
+  options_.uavs[0].setpoint_loss = {milliseconds(4), uav::LossAction::kBrake};
+  coordinator_ = std::make_unique<Coordinator>(*simulator_, recorder_, options_,
+                                               [this] { return now_ += tick_; });
+  const uav::Setpoint down{.mask = uav::kJoints, .joints_rad = {0.5}};
+  run({follow(milliseconds(2), {{Duration(0), there(1)}, {milliseconds(3), there(2)}}),
+       follow(milliseconds(2), {{Duration(0), down}}), sleep({}, milliseconds(3)),
+       follow(milliseconds(1), {{Duration(0), down}}), sleep({}, milliseconds(8)),
+       finish(Duration(0))});
+  EXPECT_THAT(effects(),
+              testing::ElementsAre("2 ms 1", "4 ms 512", "5 ms 1", "8 ms 512", "10 ms 18 brake"));
+  EXPECT_EQ(recorder_.header.suts.at(0).joints.at(0).name, "pitch");
+}
+
 TEST_F(SetpointsTest, ALostLinkHasTheEffectOfTheScenario) {
   using enum uav::LossAction;
   const std::pair<uav::LossAction, uav::Setpoint> cases[] = {

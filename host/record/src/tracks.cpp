@@ -3,6 +3,7 @@
 #include <initializer_list>
 
 #include <tether/record/tracks.h>
+#include <tether/uav/joint.h>
 
 namespace tether::record {
 namespace {
@@ -60,8 +61,43 @@ std::optional<uav::Pose> UavTrack::at(SimTime instant) const {
   return off > period_ ? std::nullopt : std::optional(pose_of(nearest));
 }
 
+std::vector<double> UavTrack::joints_rad(SimTime instant) const {
+  if (truths_.empty()) return {};
+  const auto after = std::ranges::lower_bound(truths_, instant, {}, &GroundTruth::at);
+  const GroundTruth& next = after == truths_.end() ? *truths_.back() : **after;
+  const GroundTruth& last = after == truths_.begin() ? next : **(after - 1);
+  const bool is_between = last.at < instant && instant < next.at;
+  const double share =
+      is_between ? to_seconds(instant - last.at) / to_seconds(next.at - last.at) : 1.0;
+  std::vector<double> angles_rad = next.joints_rad;
+  for (std::size_t i = 0; i < std::min(angles_rad.size(), last.joints_rad.size()); ++i)
+    angles_rad[i] = last.joints_rad[i] + share * (angles_rad[i] - last.joints_rad[i]);
+  return angles_rad;
+}
+
 std::optional<uav::Pose> pose_at(const Record& record, const std::string& uav, SimTime instant) {
   return UavTrack(record, uav).at(instant);
+}
+
+SensorInfo mounted_at(const SensorInfo& camera, const Record& record, SimTime instant) {
+  const auto sut = std::ranges::find(record.header.suts, camera.uav, &SutInfo::uav);
+  if (!camera.camera || camera.camera->joints == 0 || sut == record.header.suts.end())
+    return camera;
+  std::vector<uav::Joint> joints;
+  for (const JointInfo& joint : sut->joints)
+    joints.push_back({.name = {}, .p_BJ = vec3(joint.p_BJ_m), .axis_B = vec3(joint.axis_B)});
+  std::vector<double> angles_rad = UavTrack(record, camera.uav).joints_rad(instant);
+  angles_rad.resize(
+      std::min({angles_rad.size(), joints.size(), std::size_t{camera.camera->joints}}));
+  const double(&q)[4] = camera.camera->q_BS;
+  const uav::Pose X_BS =
+      turned(joints, angles_rad, {vec3(camera.camera->p_BS_m), {q[0], q[1], q[2], q[3]}});
+  SensorInfo now = camera;
+  std::ranges::copy(std::initializer_list<double>{X_BS.p.x, X_BS.p.y, X_BS.p.z},
+                    now.camera->p_BS_m);
+  std::ranges::copy(std::initializer_list<double>{X_BS.q.w, X_BS.q.x, X_BS.q.y, X_BS.q.z},
+                    now.camera->q_BS);
+  return now;
 }
 
 AnchorTrack::AnchorTrack(const Anchor& anchor, const Record& record)

@@ -109,5 +109,25 @@ TEST(AnchorTrack, OfAUavFollowsItsGroundTruth) {
   EXPECT_EQ(track.at(kAt).p_WA_m[0], 7.0) << "the record ends before";
 }
 
+// Half of the way between its two messages.
+TEST(MountedAt, ACameraBehindAJointIsTurnedAsTheGroundTruthSays) {
+  Record record = turning_flight();
+  record.header.suts.emplace_back().uav = "uav1";
+  record.header.suts[0].joints = {{"yaw", {1, 0, 0}, {0, 0, 1}, -4, 4, 1}};
+  record.ground_truth[0].message.joints_rad = {0.0};
+  record.ground_truth[2].message.joints_rad = {std::numbers::pi};
+  SensorInfo camera;
+  camera.uav = "uav1";
+  camera.camera = CameraInfo{.p_BS_m = {3, 0, 0}};
+  const auto mounted = [&] { return mounted_at(camera, record, SimTime(milliseconds(15))); };
+  EXPECT_EQ(mounted().camera->p_BS_m[0], 3.0) << "it is not behind the joint";
+  camera.camera->joints = 1;
+  EXPECT_NEAR(mounted().camera->p_BS_m[0], 1.0, 1e-12);
+  EXPECT_NEAR(mounted().camera->p_BS_m[1], 2.0, 1e-12);
+  EXPECT_NEAR(mounted().camera->q_BS[3], std::sqrt(0.5), 1e-12);
+  camera.camera->joints = 7;
+  EXPECT_NEAR(mounted().camera->p_BS_m[1], 2.0, 1e-12) << "of a damaged record";
+}
+
 }  // namespace
 }  // namespace tether::record

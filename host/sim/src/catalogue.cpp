@@ -36,10 +36,13 @@ uav::ScanProperties describe(const World&, const ScanModel& scan) {
 
 uav::SensorDescription describe_sensor(const World& world, const Sensor& sensor) {
   using Properties = decltype(uav::SensorDescription::properties);
-  return {sensor.name, sensor.X_BS, sensor.update_rate_hz,
+  return {sensor.name,
+          sensor.X_BS,
+          sensor.update_rate_hz,
           std::visit([&](const auto& model) -> Properties { return describe(world, model); },
                      sensor.model),
-          sensor.driver != uav::DriverModel{}};
+          sensor.driver != uav::DriverModel{},
+          static_cast<std::uint32_t>(sensor.joints)};
 }
 
 }  // namespace
@@ -59,6 +62,7 @@ std::vector<std::string> model_names(const World& world) {
 
 uav::Catalogue make_catalogue(const World& world, const Uav& uav) {
   uav::Catalogue catalogue{uav.name, {}, {}};
+  catalogue.limits.joints = uav.joints;
   for (const Sensor& sensor : uav.sensors)
     catalogue.sensors.push_back(describe_sensor(world, sensor));
   for (const PlacedAnchor& placed : world.anchors)

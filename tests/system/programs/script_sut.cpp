@@ -31,7 +31,8 @@ tether::uav::Setpoint setpoint(int mask) {
           .q_WB = tether::uav::from_rpy(0.02, -0.03, 0.1),
           .w_WB_B_rad_s = {0.02, 0.01, 0.1},
           .thrust_N = 7.1,
-          .rotor_speeds_rad_s = {450, 455, 450, 455}};
+          .rotor_speeds_rad_s = {450, 455, 450, 455},
+          .joints_rad = {-0.6, 1.2}};
 }
 
 Status follow(Vehicle& vehicle, const std::string& masks) {

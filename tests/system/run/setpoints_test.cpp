@@ -22,7 +22,7 @@ class Setpoints : public testing::Test {
                "name = \"fly\"\nworld = \"" + hover_world().string() +
                    "\"\ntime_limit_s = 20\nmax_contact_speed_m_s = inf\n[[uav]]\nname = \"uav1\"\n"
                    "model = \"" TETHER_SOURCE_DIR
-                   "/data/models/hummingbird/model.sdf\"\n"
+                   "/data/models/hummingbird_gimbal/model.sdf\"\n"
                    "position_m = [0.0, 0.0, 1.0]\n" +
                    uav_keys + "[sut]\ncommand = [\"" SCRIPT_SUT_PROGRAM "\", " + calls +
                    "\"finish\"]\n[[condition]]\nname = \"only\"\n"
@@ -51,9 +51,28 @@ TEST_F(Setpoints, APositionIsReachedAndALostLinkEndsInALanding) {
   EXPECT_LT(record.ground_truth.back().message.p_WB_m[2], 0.3);
 }
 
+TEST_F(Setpoints, AGimbalTurnsAtItsRateWhileTheUavFliesOn) {
+  const Output output = fly("gimbal", R"("follow:2", "follow:512", "sleep:2000", )", "");
+  ASSERT_EQ(output.code, 0) << output.err;
+  EXPECT_EQ(audit_code(folder_ / "gimbal"), 0);
+  const record::Record record = read_record(folder_ / "gimbal");
+  const auto& joints = record.header.suts.at(0).joints;
+  ASSERT_EQ(joints.size(), 2u);
+  EXPECT_EQ(joints[1].name, "gimbal_pitch");
+  const auto at = [&](Duration time) {
+    return std::ranges::find_if(record.ground_truth,
+                                [&](const auto& truth) { return truth.at >= SimTime(time); })
+        ->message;
+  };
+  EXPECT_NEAR(at(200ms).joints_rad.at(1), 2.0 * 0.2, 0.02);
+  EXPECT_EQ(at(1s).joints_rad, (std::vector{-0.6, 1.2}));
+  EXPECT_GT(at(1s).v_WB_m_s[0], 0.2);
+}
+
 TEST_F(Setpoints, AnyMixFollowsTheRulesOfTimeAndRepeats) {
   constexpr const char* kMasks[] = {"1", "9",    "23",  "2",   "1010", "1006",
                                     "4", "1020", "160", "192", "256"};
+  constexpr int kJoints = 512;
   const std::string keys =
       "command_latency = { kind = \"normal\", mean_ms = 6, stddev_ms = 5 }\n"
       "setpoint_timeout_ms = 40\non_setpoint_loss = \"";
@@ -65,6 +84,10 @@ TEST_F(Setpoints, AnyMixFollowsTheRulesOfTimeAndRepeats) {
       for (std::uint32_t more = random.bits() % 4; more > 0; --more)
         calls += std::string(kMasks[random.bits() % 11]) + ",";
       calls += std::string(kMasks[random.bits() % 8]) + "\", ";
+      if (random.bits() % 4 == 0)
+        calls += "\"follow:" + std::to_string(kJoints) +
+                 "\", \"follow:" + std::to_string(kJoints + 1) + "," + kMasks[random.bits() % 8] +
+                 "\", ";
       if (random.bits() % 3 == 0) calls += "\"sleep:" + std::to_string(random.bits() % 70) + "\", ";
     }
     const std::string name = action;

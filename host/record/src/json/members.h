@@ -79,6 +79,7 @@ void members(auto& io, Maybe<Setpoint> auto& m) {
   field(64, "w_WB_B_rad_s", m.w_WB_B_rad_s);
   field(128, "thrust_n", m.thrust_N);
   field(256, "rotor_speeds_rad_s", m.rotor_speeds_rad_s);
+  field(512, "joints_rad", m.joints_rad);
 }
 
 void members(auto& io, Maybe<Interaction> auto& m) {
@@ -154,6 +155,7 @@ void members(auto& io, Maybe<GroundTruth> auto& m) {
   io("w_WB_B_rad_s", m.w_WB_B_rad_s);
   if (io.has("clearance_m", m.clearance_m.has_value()))
     io("clearance_m", io.value_of(m.clearance_m));
+  if (io.has("joints_rad", !m.joints_rad.empty())) io("joints_rad", m.joints_rad);
 }
 
 void members(auto& io, Maybe<Stop> auto& m) {
@@ -282,6 +284,15 @@ void members(auto& io, Maybe<ControllerInfo> auto& m) {
   io("link_latency_ns", m.link_latency);
 }
 
+void members(auto& io, Maybe<JointInfo> auto& m) {
+  io("name", m.name);
+  io("p_BJ_m", m.p_BJ_m);
+  io("axis_B", m.axis_B);
+  io("min_rad", m.min_rad);
+  io("max_rad", m.max_rad);
+  io.positive("max_rate_rad_s", m.max_rate_rad_s);
+}
+
 void members(auto& io, Maybe<SutInfo> auto& m) {
   constexpr int kMostCores = 1024;
   io("uav", m.uav);
@@ -318,6 +329,7 @@ void members(auto& io, Maybe<SutInfo> auto& m) {
     io.positive("max_angular_acceleration_rad_s2", m.max_angular_acceleration_rad_s2);
   if (io.has("energy", m.energy.has_value()))
     io.object("energy", [&](auto& energy) { members(energy, io.value_of(m.energy)); });
+  if (io.has("joints", !m.joints.empty())) io.list("joints", m.joints);
   if (!io.has("board", !m.board.empty())) return;
   io("board", m.board);
   if (io.has("pinned_core", m.pinned_core.has_value()))
@@ -350,6 +362,7 @@ void members(auto& io, Maybe<CameraInfo> auto& m) {
     io("depth_max_m", m.depth_max_m);
   }
   if (io.has("models", !m.models.empty())) io.list("models", m.models);
+  if (io.has("joints", m.joints > 0)) io("joints", m.joints);
 }
 
 void members(auto& io, Maybe<DriverInfo> auto& m) {

@@ -62,7 +62,7 @@ const Schema kInteractionSchema{"tether.Interaction", R"json({
       "items": {
         "type": "object",
         "properties": {
-        "mask": {"type": "integer", "description": "sum of: 1 position, 2 velocity, 4 acceleration, 8 yaw, 16 yaw rate, 32 attitude, 64 body rates, 128 thrust, 256 rotor speeds"},
+        "mask": {"type": "integer", "description": "sum of: 1 position, 2 velocity, 4 acceleration, 8 yaw, 16 yaw rate, 32 attitude, 64 body rates, 128 thrust, 256 rotor speeds, 512 joints"},
         "after_ns": {"type": "integer", "description": "from when the command arrives"},
         "in_heading": {"type": "boolean", "description": "velocity and acceleration are in H, not W"},
         "p_WB_m": {"type": "array", "items": {"type": "number"}},
@@ -73,7 +73,8 @@ const Schema kInteractionSchema{"tether.Interaction", R"json({
         "q_WB": {"type": "array", "items": {"type": "number"}, "description": "w, x, y, z"},
         "w_WB_B_rad_s": {"type": "array", "items": {"type": "number"}},
         "thrust_n": {"type": "number"},
-        "rotor_speeds_rad_s": {"type": "array", "items": {"type": "number"}}
+        "rotor_speeds_rad_s": {"type": "array", "items": {"type": "number"}},
+        "joints_rad": {"type": "array", "items": {"type": "number"}}
         },
         "required": ["mask"]
       }
@@ -154,7 +155,7 @@ const Schema kCommandEffectSchema{"tether.CommandEffect", R"json({
     "setpoint": {
       "type": "object",
       "properties": {
-        "mask": {"type": "integer", "description": "sum of: 1 position, 2 velocity, 4 acceleration, 8 yaw, 16 yaw rate, 32 attitude, 64 body rates, 128 thrust, 256 rotor speeds"},
+        "mask": {"type": "integer", "description": "sum of: 1 position, 2 velocity, 4 acceleration, 8 yaw, 16 yaw rate, 32 attitude, 64 body rates, 128 thrust, 256 rotor speeds, 512 joints"},
         "after_ns": {"type": "integer", "description": "from when the command arrives"},
         "in_heading": {"type": "boolean", "description": "velocity and acceleration are in H, not W"},
         "p_WB_m": {"type": "array", "items": {"type": "number"}},
@@ -165,7 +166,8 @@ const Schema kCommandEffectSchema{"tether.CommandEffect", R"json({
         "q_WB": {"type": "array", "items": {"type": "number"}, "description": "w, x, y, z"},
         "w_WB_B_rad_s": {"type": "array", "items": {"type": "number"}},
         "thrust_n": {"type": "number"},
-        "rotor_speeds_rad_s": {"type": "array", "items": {"type": "number"}}
+        "rotor_speeds_rad_s": {"type": "array", "items": {"type": "number"}},
+        "joints_rad": {"type": "array", "items": {"type": "number"}}
       },
       "required": ["mask"]
     },
@@ -187,7 +189,8 @@ const Schema kGroundTruthSchema{"tether.GroundTruth", R"json({
              "description": "w x y z"},
     "v_WB_m_s": {"type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3},
     "w_WB_B_rad_s": {"type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3},
-    "clearance_m": {"type": "number", "description": "distance to the nearest surface"}
+    "clearance_m": {"type": "number", "description": "distance to the nearest surface"},
+    "joints_rad": {"type": "array", "items": {"type": "number"}, "description": "angles of the UAV's joints"}
   },
   "required": ["uav", "at_ns", "p_WB_m", "q_WB", "v_WB_m_s", "w_WB_B_rad_s"]
 })json"};

@@ -147,10 +147,11 @@ std::optional<TrueRoi> find_true_roi(const record::Record& record, const record:
   const auto X_WB = record::pose_at(record, image.uav, image.at);
   if (anchor == anchors.end() || camera == sensors.end() || !X_WB) return std::nullopt;
   const record::Anchor now = record::AnchorTrack(*anchor, record).at(image.at);
+  const record::SensorInfo mounted = mounted_at(*camera, record, image.at);
   const auto* read = campaign::find_read(record, image.uav, image.sensor, image.index);
-  const auto roi = read == nullptr ? campaign::true_roi(*camera, *X_WB, now)
-                                   : campaign::roi_in_image(*read, *camera, *X_WB, now);
-  return TrueRoi{roi ? campaign::visible_part(*camera, *roi) : std::nullopt,
+  const auto roi = read == nullptr ? campaign::true_roi(mounted, *X_WB, now)
+                                   : campaign::roi_in_image(*read, mounted, *X_WB, now);
+  return TrueRoi{roi ? campaign::visible_part(mounted, *roi) : std::nullopt,
                  read != nullptr && read->seen_anchors.has_value()};
 }
 

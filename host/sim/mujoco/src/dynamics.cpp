@@ -18,7 +18,7 @@ Dynamics::Dynamics(const World& world, const WarningSink& warn, const MeshFiles&
       recorder_(world),
       X_WB_(recorder_.layout().bodies()),
       motions_(recorder_.layout().uavs()),
-      shape_owners_(shape_owners(world)),
+      shapes_(shapes_of(world)),
       qvel_before_(static_cast<std::size_t>(model_->nv)),
       meter_(world, [&](const MeshGeometry& mesh) { return meshes.corners(mesh); }) {
   meter_.warn_of_starts(warn);
@@ -53,7 +53,8 @@ void Dynamics::reset(std::uint64_t seed) {
 }
 
 void Dynamics::set_setpoint(std::size_t uav, const uav::Setpoint& setpoint) {
-  flights_[uav].setpoint = setpoint;
+  if (setpoint.has(uav::kJoints)) recorder_.joints().command(uav, setpoint.joints_rad);
+  if (setpoint.flies()) flights_[uav].setpoint = setpoint;
 }
 
 void Dynamics::step() {
@@ -111,7 +112,7 @@ void Dynamics::log_contacts() {
       if (uav < 0 || uav >= uavs) continue;
       const int other = shapes[1 - own];
       contacts_.add({now_, static_cast<std::size_t>(uav),
-                     shape_owners_[static_cast<std::size_t>(other)], other, speed_m_s});
+                     shapes_[static_cast<std::size_t>(other)].owner, other, speed_m_s});
     }
   }
 }

@@ -37,6 +37,9 @@ class Dynamics {
   /// As StateRecorder does.
   void capture(std::vector<double>& state) const;
   uav::BodyState body_state(std::size_t uav) const;
+  std::span<const double> joints_rad(std::size_t uav) const {
+    return recorder_.joints().angles_rad(uav);
+  }
   const mjModel& model() const { return *model_; }
   std::optional<Clearance> clearance(std::size_t uav) const { return meter_.measure(uav, X_WB_); }
   /// The contacts of UAVs in the steps so far.
@@ -76,7 +79,7 @@ class Dynamics {
   StateRecorder recorder_;
   std::vector<uav::Pose> X_WB_;      // of each of `moving_bodies`
   std::vector<BodyMotion> motions_;  // of each UAV
-  std::vector<std::string_view> shape_owners_;
+  std::vector<Shape> shapes_;
   std::vector<mjtNum> qvel_before_;  // at the beginning of the last step
   ContactLog contacts_;
   ClearanceMeter meter_;

@@ -46,7 +46,7 @@ class MujocoSimulator final : public Simulator {
       : parts_(std::move(parts)),
         warn_(printable_warnings(std::move(warn))),
         grid_(world_.step),
-        rays_(dynamics_.model()),
+        rays_(dynamics_.model(), world_),
         sensors_(world_, back_end(*parts_, rays_, threads_ahead), warn_) {}
 
   const World& world() const override { return world_; }
@@ -100,7 +100,8 @@ class MujocoSimulator final : public Simulator {
 
   GroundTruth ground_truth(std::size_t uav) const override {
     check_uav(uav);
-    return {now_, dynamics_.body_state(uav)};
+    const auto joints_rad = dynamics_.joints_rad(uav);
+    return {now_, dynamics_.body_state(uav), {joints_rad.begin(), joints_rad.end()}};
   }
 
   bool moves_by_forces() const override { return true; }

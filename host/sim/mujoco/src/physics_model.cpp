@@ -150,18 +150,21 @@ class PhysicsXml {
 }  // namespace
 
 // The engine keeps the order of the shapes: those of its world, then body by body.
-std::vector<std::string_view> shape_owners(const World& world) {
-  std::vector<std::string_view> owners;
+std::vector<Shape> shapes_of(const World& world) {
+  std::vector<Shape> shapes;
+  const auto add = [&shapes](const std::string& owner, const Collision& collision) {
+    shapes.push_back({owner, static_cast<float>(collision.intensity)});
+  };
   for (const FixedBody& body : fixed_bodies(world)) {
-    owners.insert(owners.end(), body.link->collisions.size(), body.model->name);
+    for (const Collision& collision : body.link->collisions) add(body.model->name, collision);
   }
   for (const MovingBody& body : moving_bodies(world)) {
     for (const Collision& collision : body.link->collisions) {
       if (std::holds_alternative<PlaneGeometry>(collision.geometry)) continue;
-      owners.emplace_back(body.uav ? body.uav->name : body.model->name);
+      add(body.uav ? body.uav->name : body.model->name, collision);
     }
   }
-  return owners;
+  return shapes;
 }
 
 ModelPtr make_physics_model(const World& world, const WarningSink& warn, const MeshFiles& meshes) {

@@ -22,8 +22,13 @@ inline constexpr double kDrivenMass_kg = 1e6;
 ModelPtr make_physics_model(const World& world, const WarningSink& warn,
                             const MeshFiles& meshes = MeshFiles());
 
-/// The name of the model or UAV of each of the engine's shapes. Refers into `world`.
-std::vector<std::string_view> shape_owners(const World& world);
+/// One of the engine's shapes.
+struct Shape {
+  std::string_view owner;  ///< name of the model or UAV; refers into the world
+  float intensity = 0.0F;  ///< Collision::intensity
+};
+/// By the engine's numbers.
+std::vector<Shape> shapes_of(const World& world);
 
 /// Where body i of `moving_bodies` is in the engine's arrays.
 constexpr int qpos_address(std::size_t body) {

@@ -28,7 +28,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 struct Cast {
   World world;
   ModelPtr model = make_physics_model(world, no_warnings());
-  CollisionRays rays{*model};
+  CollisionRays rays{*model, world};
 
   std::vector<double> distances_m(const RayBundle& bundle) {
     std::vector<double> distances(bundle.rays_S.size(), -1.0);
@@ -88,6 +88,22 @@ TEST(WallsBetween, CountsWallsButNoUavs) {
   EXPECT_EQ(simulator->walls_between(1, 2), 0);
   EXPECT_EQ(simulator->walls_between(0, 3), 2) << "through two UAVs";
   EXPECT_EQ(simulator->walls_between(4, 0), 4);
+}
+
+TEST(CollisionRaysTest, TheSurfaceThatIsMetGivesTheIntensity) {
+  World world = test_world();  // floor
+  world.models[0].links[0].collisions[0].intensity = 0.25;
+  world.models.push_back(testing::box_model("loose", {3.0, 0.0, 1.0}, {1, 1, 1}, {}, false));
+  world.models.back().links[0].collisions[0].intensity = 200.0;
+  Cast cast{world};
+  const std::vector<Pose> X_WB{{{0.0, 0.0, 1.0}, {}}, {{3.0, 0.0, 1.0}, {}}};
+  const std::vector<Vec3> rays_S{{0.0, 0.0, -1.0}, {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}};
+  std::vector<double> distances_m(3);
+  std::vector<float> intensities(3, -1.0F);
+  ASSERT_TRUE(
+      cast.rays.cast_with_intensities({X_WB[0], rays_S, X_WB, 0}, distances_m, intensities));
+  EXPECT_EQ(intensities, (std::vector<float>{0.25F, 200.0F, 0.0F}));
+  EXPECT_EQ(distances_m, cast.distances_m({X_WB[0], rays_S, X_WB, 0}));
 }
 
 }  // namespace

@@ -74,7 +74,8 @@ class RemoteSimulator final : public Simulator {
   bool takes_setpoints() const override { return takes_setpoints_; }
   void apply(std::size_t uav, const uav::Setpoint& setpoint) override {
     check_uav(uav);
-    commands_[uav] = setpoint;
+    if (setpoint.has(uav::kJoints)) recorder_.joints().command(uav, setpoint.joints_rad);
+    if (setpoint.flies()) commands_[uav] = flight_of(setpoint);
   }
 
   void capture(Snapshot& snapshot) const override {
@@ -89,7 +90,8 @@ class RemoteSimulator final : public Simulator {
 
   GroundTruth ground_truth(std::size_t uav) const override {
     check_uav(uav);
-    return {now(), state_.bodies[uav]};
+    const auto joints_rad = recorder_.joints().angles_rad(uav);
+    return {now(), state_.bodies[uav], {joints_rad.begin(), joints_rad.end()}};
   }
 
   bool reports_contacts() const override { return reports_contacts_; }
@@ -134,9 +136,12 @@ class RemoteSimulator final : public Simulator {
         request.setpoints.push_back({uav, *commands_[i]});
       commands_[i].reset();
     }
+    const std::int64_t steps = (t - now()) / grid_.dt();
     take(session_.ask<protocol::State>(request));
     for (const protocol::Touch& touch : state_.touches) log_touch(touch);
     const std::size_t bodies = X_WB_.size();
+    const auto recorded = static_cast<std::int64_t>(state_.past.size() / bodies);
+    for (std::int64_t i = recorded; i < steps; ++i) recorder_.joints().step();
     for (std::size_t i = 0; i < state_.past.size(); i += bodies) {
       recorder_.begin_step(std::span(state_.past).subspan(i, bodies));
     }

@@ -71,7 +71,6 @@ void ImageMaker::draw(const CameraModel& camera, const Request& r, raster::Pictu
 void ImageMaker::place_instants(const CameraModel& camera, const Request& r) {
   const std::size_t bodies = layout_.bodies();
   const std::size_t steps = shutter_steps(camera, world_.step);
-  const uav::Pose X_BC = r.sensor.X_BS * uav::Pose{{}, uav::q_body_from_optical()};
   poses_.resize((steps + 1) * bodies);
   instants_.clear();
   for (std::size_t i = 0; i <= steps; ++i) {
@@ -79,6 +78,8 @@ void ImageMaker::place_instants(const CameraModel& camera, const Request& r) {
     for (std::size_t body = 0; body < bodies; ++body) {
       X_WB[body] = layout_.past_pose_of(r.state, body, steps - i);
     }
+    const uav::Pose X_BC = layout_.mounting(r.state, world_, r.uav, r.sensor, steps - i) *
+                           uav::Pose{{}, uav::q_body_from_optical()};
     instants_.push_back({X_WB[r.uav] * X_BC, X_WB});
   }
 }

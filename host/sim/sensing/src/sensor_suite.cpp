@@ -56,12 +56,12 @@ uav::Sample SensorSuite::measure(const Snapshot& snapshot, std::size_t uav, std:
                                    key);
               },
               [&](const RangeModel& range) -> uav::Sample {
-                cast(range, snapshot.state, uav, mounted.X_BS);
+                cast(range, snapshot.state, uav, mounted);
                 return measure_range(range, distances_m_, key);
               },
               [&](const ScanModel& scan) -> uav::Sample {
                 cast(scan, snapshot.state, uav, mounted);
-                return measure_scan(scan, distances_m_, key);
+                return measure_scan(scan, distances_m_, key, intensities_);
               },
               [&](const CameraModel&) { return picture(snapshot, uav, sensor, index); },
               [&](const NavSatModel& navsat) -> uav::Sample {
@@ -159,7 +159,10 @@ void SensorSuite::cast(const ScanModel& scan, const std::vector<double>& state, 
   if (is_new) known->second = rays_of(scan);
   const std::span<const uav::Vec3> rays_S = known->second;
   distances_m_.resize(rays_S.size());
+  intensities_.resize(rays_S.size());
   const std::span<double> distances_m = distances_m_;
+  const std::span<float> intensities = intensities_;
+  bool is_known = true;
   const auto rows = static_cast<std::size_t>(scan.rays.rows);
   for (int first = 0, end = 0; first < scan.rays.columns; first = end) {
     const std::size_t steps = steps_ago(scan, first, world_.step);
@@ -167,17 +170,22 @@ void SensorSuite::cast(const ScanModel& scan, const std::vector<double>& state, 
     for (std::size_t i = 0; i < X_WB_.size(); ++i) X_WB_[i] = layout_.past_pose_of(state, i, steps);
     const std::size_t from = static_cast<std::size_t>(first) * rows;
     const std::size_t count = static_cast<std::size_t>(end - first) * rows;
-    rays_.cast(
-        {X_WB_[uav] * mounted.X_BS, rays_S.subspan(from, count), X_WB_, uav, farthest_read_m(scan)},
-        distances_m.subspan(from, count));
+    const RayBundle bundle{X_WB_[uav] * layout_.mounting(state, world_, uav, mounted, steps),
+                           rays_S.subspan(from, count), X_WB_, uav, farthest_read_m(scan)};
+    const auto distances = distances_m.subspan(from, count);
+    is_known = rays_.cast_with_intensities(bundle, distances, intensities.subspan(from, count));
+    if (!is_known) rays_.cast(bundle, distances);
   }
+  if (!is_known) intensities_.clear();
 }
 
 void SensorSuite::cast(const RangeModel& range, const std::vector<double>& state, std::size_t uav,
-                       const uav::Pose& X_BS) {
+                       const Sensor& mounted) {
   for (std::size_t i = 0; i < X_WB_.size(); ++i) X_WB_[i] = layout_.pose_of(state, i);
   distances_m_.resize(range.rays_S.size());
-  rays_.cast({X_WB_[uav] * X_BS, range.rays_S, X_WB_, uav, farthest_read_m(range)}, distances_m_);
+  rays_.cast({X_WB_[uav] * layout_.mounting(state, world_, uav, mounted), range.rays_S, X_WB_, uav,
+              farthest_read_m(range)},
+             distances_m_);
 }
 
 }  // namespace tether::sim

@@ -48,10 +48,17 @@ std::size_t shutter_steps(const World& world) {
 StateLayout::StateLayout(const World& world)
     : bodies_(moving_bodies(world).size()),
       uavs_(world.uavs.size()),
-      past_steps_(shutter_steps(world)) {}
+      past_steps_(shutter_steps(world)),
+      first_joint_{0} {
+  for (const Uav& uav : world.uavs) first_joint_.push_back(first_joint_.back() + uav.joints.size());
+}
 
 std::size_t StateLayout::size() const {
-  return past_at() + past_steps_ * bodies_ * kPoseSize;
+  return past_at() + past_steps_ * row_size();
+}
+
+std::size_t StateLayout::row_size() const {
+  return bodies_ * kPoseSize + joints();
 }
 
 std::size_t StateLayout::motion_at(std::size_t uav) const {
@@ -71,7 +78,18 @@ uav::Pose StateLayout::past_pose_of(const std::vector<double>& state, std::size_
                                     std::size_t steps_ago) const {
   if (steps_ago == 0) return pose_of(state, body);
   const std::size_t row = past_steps_ - steps_ago;
-  return read_pose(state.data() + past_at() + (row * bodies_ + body) * kPoseSize);
+  return read_pose(state.data() + past_at() + row * row_size() + body * kPoseSize);
+}
+
+uav::Pose StateLayout::mounting(const std::vector<double>& state, const World& world,
+                                std::size_t uav, const Sensor& sensor,
+                                std::size_t steps_ago) const {
+  if (sensor.joints == 0) return sensor.X_BS;
+  const std::size_t end =
+      steps_ago == 0 ? past_at() : past_at() + (past_steps_ - steps_ago + 1) * row_size();
+  const std::size_t first = end - joints() + first_joint_[uav];
+  return turned(world.uavs[uav].joints, std::span(state).subspan(first, sensor.joints),
+                sensor.X_BS);
 }
 
 }  // namespace tether::sim

@@ -8,17 +8,20 @@
 namespace tether::sim {
 
 StateRecorder::StateRecorder(const World& world)
-    : layout_(world), past_(layout_.size() - layout_.past_at()) {}
+    : layout_(world), joints_(world), past_(layout_.size() - layout_.past_at()) {}
 
 void StateRecorder::reset(std::span<const uav::Pose> X_WB) {
+  joints_.reset();
   for (std::size_t i = 0; i < layout_.past_steps(); ++i) begin_step(X_WB);
 }
 
 void StateRecorder::begin_step(std::span<const uav::Pose> X_WB) {
   assert(X_WB.size() == layout_.bodies());
-  if (layout_.past_steps() == 0) return;
-  double* out = past_.data() + oldest_ * X_WB.size() * kPoseSize;
+  if (layout_.past_steps() == 0) return joints_.step();
+  double* out = past_.data() + oldest_ * layout_.row_size();
   for (const uav::Pose& X : X_WB) out = write(X, out);
+  std::ranges::copy(joints_.angles_rad(), out);
+  joints_.step();
   oldest_ = (oldest_ + 1) % layout_.past_steps();
 }
 
@@ -32,7 +35,8 @@ void StateRecorder::capture(std::span<const uav::Pose> X_WB, std::span<const Bod
     for (const uav::Vec3& v : {motion.w_WB_B, motion.a_WB_W, motion.alpha_WB_B, motion.v_WB_W})
       out = write(v, out);
   }
-  const double* const seam = past_.data() + oldest_ * X_WB.size() * kPoseSize;
+  out = std::ranges::copy(joints_.angles_rad(), out).out;
+  const double* const seam = past_.data() + oldest_ * layout_.row_size();
   const double* const end = past_.data() + past_.size();
   std::copy(past_.data(), seam, std::copy(seam, end, out));
 }

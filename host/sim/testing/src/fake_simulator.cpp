@@ -153,7 +153,8 @@ void FakeSimulator::computing(std::size_t uav, double cores) {
 
 void FakeSimulator::apply(std::size_t uav, const uav::Setpoint& setpoint) {
   check_uav(uav);
-  bodies_[uav].command = heading_velocity(setpoint).value_or(uav::VelocityCommand{});
+  if (setpoint.flies())
+    bodies_[uav].command = heading_velocity(setpoint).value_or(uav::VelocityCommand{});
   applied_.push_back({now_, uav, setpoint});
 }
 

@@ -84,6 +84,10 @@ tether_status tether_sensor_mounting(const tether_sensor* sensor, tether_pose* o
   return TETHER_OK;
 }
 
+size_t tether_sensor_joints(const tether_sensor* sensor) noexcept {
+  return are_given(sensor) ? from_c(sensor)->joints : 0;
+}
+
 tether_status tether_sensor_camera_model(const tether_sensor* sensor, tether_camera_model* out,
                                          size_t size) noexcept {
   if (!tether::c_api::can_take(out, size) || !are_given(sensor)) return TETHER_INVALID;

@@ -14,6 +14,8 @@ template <>
 inline constexpr std::size_t kFirstSize<tether_setpoint> = 240;
 template <>
 inline constexpr std::size_t kFirstSize<tether_flight_limits> = 24;
+template <>
+inline constexpr std::size_t kFirstSize<tether_joint> = 80;
 
 namespace {
 
@@ -21,6 +23,14 @@ static_assert(sizeof(tether_setpoint) >= kFirstSize<tether_setpoint>);
 
 uav::Vec3 from_c(const tether_vec3& v) {
   return {v.x, v.y, v.z};
+}
+
+/// As many as there are; of more than are known, one more, which is refused.
+template <std::size_t kKnown>
+std::vector<double> numbers(const double (&values)[kKnown], std::uint32_t count) {
+  std::vector<double> all(values, values + std::min<std::size_t>(count, kKnown));
+  if (count > kKnown) all.resize(kKnown + 1);
+  return all;
 }
 
 /// Of a caller who knows `size` bytes of the struct.
@@ -39,11 +49,8 @@ uav::TimedSetpoint from_c(const std::byte* bytes, std::size_t size) {
                          .q_WB = {s.q_WB.w, s.q_WB.x, s.q_WB.y, s.q_WB.z},
                          .w_WB_B_rad_s = from_c(s.rates_B_rad_s),
                          .thrust_N = s.thrust_N,
-                         .rotor_speeds_rad_s = {}};
-  const std::size_t known = std::size(s.rotor_speeds_rad_s);
-  setpoint.rotor_speeds_rad_s.assign(s.rotor_speeds_rad_s,
-                                     s.rotor_speeds_rad_s + std::min<std::size_t>(s.rotors, known));
-  if (s.rotors > known) setpoint.rotor_speeds_rad_s.resize(known + 1);
+                         .rotor_speeds_rad_s = numbers(s.rotor_speeds_rad_s, s.rotors),
+                         .joints_rad = numbers(s.joints_rad, s.joints)};
   return {Duration(s.after_ns), std::move(setpoint)};
 }
 
@@ -59,6 +66,26 @@ tether_status tether_get_flight_limits(const tether_vehicle* vehicle, tether_fli
   if (!can_take(out, size) || !are_given(vehicle)) return TETHER_INVALID;
   const auto& limits = vehicle->vehicle->catalogue().limits;
   put(tether_flight_limits{limits.max_rotor_speed_rad_s, limits.max_thrust_N, limits.rotors, 0},
+      out, size);
+  return TETHER_OK;
+}
+
+size_t tether_joint_count(const tether_vehicle* vehicle) noexcept {
+  return are_given(vehicle) ? vehicle->vehicle->catalogue().limits.joints.size() : 0;
+}
+
+tether_status tether_get_joint(const tether_vehicle* vehicle, size_t index, tether_joint* out,
+                               size_t size) noexcept {
+  if (!can_take(out, size) || !are_given(vehicle)) return TETHER_INVALID;
+  if (index >= tether_joint_count(vehicle)) return fail(TETHER_INVALID, "there is no such joint");
+  const auto& joint = vehicle->vehicle->catalogue().limits.joints[index];
+  const auto& [x, y, z] = joint.p_BJ;
+  put(tether_joint{joint.name.c_str(),
+                   {x, y, z},
+                   {joint.axis_B.x, joint.axis_B.y, joint.axis_B.z},
+                   joint.min_rad,
+                   joint.max_rad,
+                   joint.max_rate_rad_s},
       out, size);
   return TETHER_OK;
 }

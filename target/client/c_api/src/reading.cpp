@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
 #include <memory>
 #include <new>
 #include <string>
@@ -90,6 +91,33 @@ const T* pixels_of(const std::vector<T>& pixels) {
 }  // namespace tether::c_api
 
 using namespace tether::c_api;
+
+namespace {
+
+/// `intensities`: nullptr if they are not asked for.
+tether_status read_scan(tether_vehicle* vehicle, const char* sensor, tether_read_mode mode,
+                        float* ranges_m, float* intensities, size_t capacity,
+                        tether_scan_info* info, size_t info_size) {
+  if (info != nullptr && !can_take(info, info_size)) return TETHER_INVALID;
+  if (!are_given(vehicle, sensor, ranges_m)) return TETHER_INVALID;
+  if (!fits_scan(*vehicle, sensor, capacity))
+    return fail(TETHER_INVALID, "a scan of this lidar has more rays than the buffer has room for");
+  return read<tether::uav::ScanSample>(vehicle, sensor, mode, [&](const auto& sample) {
+    if (sample.ranges_m.size() > capacity)
+      return fail(TETHER_PROTOCOL, "the scan is larger than the lidar's");
+    std::copy(sample.ranges_m.begin(), sample.ranges_m.end(), ranges_m);
+    if (intensities != nullptr && sample.intensities.empty())
+      std::fill_n(intensities, sample.ranges_m.size(), std::numeric_limits<float>::quiet_NaN());
+    else if (intensities != nullptr)
+      std::copy(sample.intensities.begin(), sample.intensities.end(), intensities);
+    if (info != nullptr)
+      put(tether_scan_info{tether::to_ns(sample.sampled_at), sample.index, sample.ranges_m.size()},
+          info, info_size);
+    return tether_status{TETHER_OK};
+  });
+}
+
+}  // namespace
 
 extern "C" {
 
@@ -216,19 +244,15 @@ tether_status tether_read_odometry(tether_vehicle* vehicle, const char* sensor,
 tether_status tether_read_scan(tether_vehicle* vehicle, const char* sensor, tether_read_mode mode,
                                float* ranges_m, size_t capacity, tether_scan_info* info,
                                size_t info_size) noexcept {
-  if (info != nullptr && !can_take(info, info_size)) return TETHER_INVALID;
-  if (!are_given(vehicle, sensor, ranges_m)) return TETHER_INVALID;
-  if (!fits_scan(*vehicle, sensor, capacity))
-    return fail(TETHER_INVALID, "a scan of this lidar has more rays than the buffer has room for");
-  return read<tether::uav::ScanSample>(vehicle, sensor, mode, [&](const auto& sample) {
-    if (sample.ranges_m.size() > capacity)
-      return fail(TETHER_PROTOCOL, "the scan is larger than the lidar's");
-    std::copy(sample.ranges_m.begin(), sample.ranges_m.end(), ranges_m);
-    if (info != nullptr)
-      put(tether_scan_info{tether::to_ns(sample.sampled_at), sample.index, sample.ranges_m.size()},
-          info, info_size);
-    return tether_status{TETHER_OK};
-  });
+  return read_scan(vehicle, sensor, mode, ranges_m, nullptr, capacity, info, info_size);
+}
+
+tether_status tether_read_scan_intensities(tether_vehicle* vehicle, const char* sensor,
+                                           tether_read_mode mode, float* ranges_m,
+                                           float* intensities, size_t capacity,
+                                           tether_scan_info* info, size_t info_size) noexcept {
+  if (!are_given(intensities)) return TETHER_INVALID;
+  return read_scan(vehicle, sensor, mode, ranges_m, intensities, capacity, info, info_size);
 }
 
 tether_status tether_read_battery(tether_vehicle* vehicle, tether_battery_sample* out,

@@ -58,7 +58,8 @@ inline tether_odometry_sample to_c(const uav::OdometrySample& sample) {
 }
 /// Shows the distances of `sample`.
 inline tether_scan to_c(const uav::ScanSample& sample) {
-  return {to_ns(sample.sampled_at), sample.index, sample.ranges_m.size(), sample.ranges_m.data()};
+  return {to_ns(sample.sampled_at), sample.index, sample.ranges_m.size(), sample.ranges_m.data(),
+          sample.intensities.empty() ? nullptr : sample.intensities.data()};
 }
 
 /// `catalogue`: that of the UAV.

@@ -29,8 +29,11 @@ TEST(Commands, EveryFieldArrives) {
   s.thrust_N = 19;
   s.rotor_speeds_rad_s[1] = 20;
   s.rotors = 2;
+  s.mask = 1023;
+  s.joints_rad[0] = 21;
+  s.joints = 1;
   ASSERT_EQ(tether_follow(flown.vehicle, &s, 1, sizeof s), TETHER_OK);
-  const uav::Setpoint expected{.mask = 511,
+  const uav::Setpoint expected{.mask = 1023,
                                .in_heading = true,
                                .p_WB_m = {1, 2, 3},
                                .velocity_m_s = {4, 5, 6},
@@ -40,7 +43,8 @@ TEST(Commands, EveryFieldArrives) {
                                .q_WB = {12, 13, 14, 15},
                                .w_WB_B_rad_s = {16, 17, 18},
                                .thrust_N = 19,
-                               .rotor_speeds_rad_s = {0, 20}};
+                               .rotor_speeds_rad_s = {0, 20},
+                               .joints_rad = {21}};
   EXPECT_THAT(flown.fake->followed,
               testing::ElementsAre(uav::TimedSetpoint{Duration(7), expected}));
 }
@@ -72,6 +76,25 @@ TEST(Commands, WrongArgumentsAreRefused) {
   ASSERT_EQ(tether_follow(flown.vehicle, &s, 1, sizeof s), TETHER_OK);
   EXPECT_NE(complaint_about(flown.fake->followed, uav::FlightLimits{}), "");
   EXPECT_EQ(flown.fake->followed[0].setpoint.rotor_speeds_rad_s.size(), 9u);
+}
+
+TEST(Commands, JointsAreThoseOfTheCatalogue) {
+  const Flown flown;
+  EXPECT_EQ(tether_joint_count(nullptr), 0u);
+  EXPECT_EQ(tether_sensor_joints(tether_find_sensor(flown.vehicle, "camera")), 1u);
+  EXPECT_EQ(tether_sensor_joints(tether_find_sensor(flown.vehicle, "imu")), 0u);
+  EXPECT_EQ(tether_sensor_joints(nullptr), 0u);
+  ASSERT_EQ(tether_joint_count(flown.vehicle), 1u);
+  tether_joint joint{};
+  ASSERT_EQ(tether_get_joint(flown.vehicle, 0, &joint, sizeof joint), TETHER_OK);
+  EXPECT_STREQ(joint.name, "yaw");
+  EXPECT_EQ(joint.point_B_m.y, 2.0);
+  EXPECT_EQ(joint.axis_B.z, 1.0);
+  EXPECT_EQ(joint.min_rad, -1.0);
+  EXPECT_EQ(joint.max_rad, 2.0);
+  EXPECT_EQ(joint.max_rate_rad_s, 0.5);
+  EXPECT_EQ(tether_get_joint(flown.vehicle, 1, &joint, sizeof joint), TETHER_INVALID);
+  EXPECT_EQ(tether_get_joint(flown.vehicle, 0, nullptr, sizeof joint), TETHER_INVALID);
 }
 
 }  // namespace

@@ -45,7 +45,8 @@ class FakeVehicle final : public client::Vehicle {
     catalogue_.anchors = {{"blue_box", uav::AnchorShape::kBox, {0.4, 0.5, 0.6}, {0.05, 0.15, 0.85}},
                           {"ball", uav::AnchorShape::kSphere, {0.2, 0.2, 0.2}, {1.0, 0.0, 0.0}}};
     catalogue_.battery_capacity_C = 7200.0;
-    catalogue_.limits = {4, 800.0, 24.0};
+    catalogue_.limits = {4, 800.0, 24.0, {{"yaw", {1, 2, 3}, {0, 0, 1}, -1, 2, 0.5}}};
+    catalogue_.sensors[0].joints = 1;
     image.rgb.assign(24, 7);
     image.rgb.back() = 9;
   }

@@ -1,6 +1,7 @@
 #include "fake_vehicle.h"
 
 #include <array>
+#include <cmath>
 
 #include <gmock/gmock.h>
 
@@ -151,6 +152,29 @@ TEST(Reading, WrongArgumentsReachNoVehicle) {
   EXPECT_EQ(tether_read_camera(flown.vehicle, "camera", 0, nullptr), TETHER_INVALID);
   EXPECT_EQ(tether_image_rgb(nullptr), nullptr);
   EXPECT_TRUE(flown.fake->reads.empty());
+}
+
+TEST(ReadScan, GivesIntensitiesOrNotANumber) {
+  const Flown flown;
+  const auto put_in = [&](std::vector<float> intensities) {
+    flown.fake->navigation = {
+        uav::ScanSample{from_ns<SimTime>(3), 4, {1.5F}, std::move(intensities)}};
+  };
+  float range_m = 0, intensity = 0;
+  tether_scan_info info{};
+  const auto read = [&](float* intensities) {
+    return tether_read_scan_intensities(flown.vehicle, "lidar", TETHER_READ_NEXT, &range_m,
+                                        intensities, 1, &info, sizeof info);
+  };
+  put_in({0.75F});
+  ASSERT_EQ(read(&intensity), TETHER_OK);
+  EXPECT_EQ(range_m, 1.5F);
+  EXPECT_EQ(intensity, 0.75F);
+  EXPECT_EQ(info.index, 4u);
+  put_in({});
+  ASSERT_EQ(read(&intensity), TETHER_OK);
+  EXPECT_TRUE(std::isnan(intensity));
+  EXPECT_EQ(read(nullptr), TETHER_INVALID);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -72,6 +73,8 @@ struct SensorDescription {
   /// Its samples have the stamps of a clock that is not exactly the SUT's: they can be later than
   /// the read.
   bool own_stamps = false;
+  /// It is behind so many joints of the UAV: X_BS is its mounting while they are at 0.
+  std::uint32_t joints = 0;
 
   SensorKind kind() const { return static_cast<SensorKind>(properties.index()); }
   /// Of a camera; else none.

@@ -105,6 +105,7 @@ void fields(auto& io, Is<Setpoint> auto& m) {
   io("thrust_n", m.thrust_N);
   io("rotor_speeds_rad_s", m.rotor_speeds_rad_s, wire::OmitEmpty{},
      wire::AtMost{MultirotorState::kMaxRotors});
+  io("joints_rad", m.joints_rad, wire::OmitEmpty{}, wire::AtMost{kMaxJoints});
   io.require([&m] { return complaint_about(m).empty(); }, "set-point",
              [&m] { return "is invalid: " + complaint_about(m); });
 }
@@ -177,6 +178,7 @@ void fields(auto& io, Is<SensorDescription> auto& m) {
   io("rate_hz", m.rate_hz, wire::kNotNegative);
   io("properties", m.properties);
   io("own_stamps", m.own_stamps);
+  io("joints", m.joints);
 }
 
 void fields(auto& io, Is<Anchor> auto& m) {
@@ -185,6 +187,17 @@ void fields(auto& io, Is<Anchor> auto& m) {
   io("shape", m.shape, wire::known_up_to(AnchorShape::kSphere));
   io("size_m", m.size_m, of_each_part(wire::kNotNegative));
   io("color_rgb", m.color_rgb, of_each_part(wire::kShare));
+}
+
+void fields(auto& io, Is<Joint> auto& m) {
+  io.here([&m] { return "joint '" + m.name.substr(0, kMaxNameBytes) + "': "; });
+  io("name", m.name, wire::AtMost{kMaxNameBytes}, wire::kNotEmpty);
+  io("p_bj", m.p_BJ);
+  io("axis_b", m.axis_B);
+  io("min_rad", m.min_rad);
+  io("max_rad", m.max_rad);
+  io("max_rate_rad_s", m.max_rate_rad_s, wire::kPositive);
+  io.require([&m] { return m.min_rad <= m.max_rad; }, "min_rad", "is above max_rad");
 }
 
 void fields(auto& io, Is<Catalogue> auto& m) {
@@ -198,6 +211,14 @@ void fields(auto& io, Is<Catalogue> auto& m) {
   io("rotors", m.limits.rotors);
   io("max_rotor_speed_rad_s", m.limits.max_rotor_speed_rad_s, wire::kNotNegative);
   io("max_thrust_n", m.limits.max_thrust_N, wire::kNotNegative);
+  io("joints", m.limits.joints, wire::OmitEmpty{}, wire::AtMost{kMaxJoints});
+  io.require(
+      [&m] {
+        for (const SensorDescription& sensor : m.sensors)
+          if (sensor.joints > m.limits.joints.size()) return false;
+        return true;
+      },
+      "sensors", "are behind more joints than there are");
 }
 
 // --- samples ------------------------------------------------------------------------------------
@@ -281,6 +302,9 @@ void fields(auto& io, Is<ScanSample> auto& m) {
   io("sampled_at_st_ns", m.sampled_at);
   io("index", m.index);
   io("ranges_m", m.ranges_m, wire::AtMost{kMaxScanRays, "has too many rays"});
+  io("intensities", m.intensities, wire::OmitEmpty{}, wire::AtMost{kMaxScanRays});
+  io.require([&m] { return m.intensities.empty() || m.intensities.size() == m.ranges_m.size(); },
+             "intensities", "are not as many as the ranges");
 }
 void fields(auto& io, Is<BatterySample> auto& m) {
   io("sampled_at_st_ns", m.sampled_at);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <tether/base/time.h>
+#include <tether/uav/joint.h>
 #include <tether/uav/math.h>
 
 /// What a UAV is commanded to do: one message with a mask, as flight controllers take it. The
@@ -36,6 +37,7 @@ enum SetpointField : std::uint16_t {
   kBodyRates = 64,
   kThrust = 128,
   kRotorSpeeds = 256,
+  kJoints = 512,
 };
 
 /// Where a set-point enters the controller's cascade.
@@ -49,7 +51,8 @@ enum class SetpointLevel { kPosition, kVelocity, kAcceleration, kAttitude, kBody
 /// - body rates and thrust
 /// - rotor speeds
 ///
-/// The first three can have a yaw or a yaw rate, too; without, the UAV keeps its yaw. Fields that
+/// The first three can have a yaw or a yaw rate, too; without, the UAV keeps its yaw. Each can have
+/// joints, which keep their angles without; joints alone change nothing of the flight. Fields that
 /// are not in the mask are ignored.
 struct Setpoint {
   std::uint16_t mask = kVelocity | kYawRate;
@@ -64,8 +67,11 @@ struct Setpoint {
   Vec3 w_WB_B_rad_s{};
   double thrust_N = 0.0;  ///< of all rotors together, along the body's z
   std::vector<double> rotor_speeds_rad_s{};
+  std::vector<double> joints_rad{};  ///< of all joints, from the body outwards
 
   constexpr bool has(SetpointField field) const { return (mask & field) != 0; }
+  /// Whether it has more than joints.
+  constexpr bool flies() const { return (mask & ~kJoints) != 0; }
   friend bool operator==(const Setpoint&, const Setpoint&) = default;
 };
 
@@ -99,13 +105,16 @@ struct FlightLimits {
   std::uint32_t rotors = 0;  ///< 0: it only takes velocities in the heading frame
   double max_rotor_speed_rad_s = 0.0;
   double max_thrust_N = 0.0;  ///< of all rotors together
+  std::vector<Joint> joints{};
   friend bool operator==(const FlightLimits&, const FlightLimits&) = default;
 };
 
 Setpoint to_setpoint(const VelocityCommand& command);
 /// Of a set-point that is a velocity in the heading frame, with or without a yaw rate; else none.
 std::optional<VelocityCommand> heading_velocity(const Setpoint& setpoint);
-/// None: the mask makes no sense.
+/// Without its joints.
+Setpoint flight_of(Setpoint setpoint);
+/// None: the mask makes no sense, or has joints only.
 std::optional<SetpointLevel> level_of(std::uint16_t mask);
 /// The same set-point: fields that are not in the mask have their defaults.
 Setpoint without_ignored(const Setpoint& setpoint);
@@ -121,6 +130,7 @@ void each_field(auto& setpoint, auto&& f) {
   f(kBodyRates, setpoint.w_WB_B_rad_s, 100.0, "body rates");
   f(kThrust, setpoint.thrust_N, 1e6, "thrust");
   f(kRotorSpeeds, setpoint.rotor_speeds_rad_s, 1e5, "rotor speeds");
+  f(kJoints, setpoint.joints_rad, 100.0, "joint angles");
 }
 
 /// What is wrong with a set-point for any UAV: "the mask 3 …"; empty: nothing. Numbers must be
@@ -130,7 +140,8 @@ std::string complaint_about(const Setpoint& setpoint);
 /// The same for a UAV with these limits.
 std::string complaint_about(const Setpoint& setpoint, const FlightLimits& limits);
 /// The same for each of a trajectory, with its number. There must be 1 to 1024, at times that begin
-/// with 0, increase, and are at most an hour. None: the limits are not known.
+/// with 0, increase, and are at most an hour; joints alone are a command of their own. None: the
+/// limits are not known.
 std::string complaint_about(std::span<const TimedSetpoint> trajectory,
                             const std::optional<FlightLimits>& limits = std::nullopt);
 

@@ -28,6 +28,7 @@ struct Setpoint {
   double w_WB_B_rad_s[3] = {};
   double thrust_N = 0.0;
   std::vector<double> rotor_speeds_rad_s{};
+  std::vector<double> joints_rad{};
   friend bool operator==(const Setpoint&, const Setpoint&) = default;
 };
 

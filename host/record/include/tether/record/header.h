@@ -41,7 +41,8 @@ struct Anchor {
 };
 /// Mounting and intrinsics of a camera, for projections into its images.
 struct CameraInfo {
-  double p_BS_m[3] = {};  ///< mounting in the UAV's body B; S is body-style (x forward)
+  /// Mounting in the UAV's body B, while its joints are at 0; S is body-style (x forward).
+  double p_BS_m[3] = {};
   double q_BS[4] = {1, 0, 0, 0};
   int width_px = 0;  ///< 1 to 100 000, as the height
   int height_px = 0;
@@ -50,6 +51,7 @@ struct CameraInfo {
   double k1 = 0, k2 = 0, k3 = 0, p1 = 0, p2 = 0;  ///< Brown-Conrady distortion, as in SDF
   double depth_min_m = 0, depth_max_m = 0;        ///< 0: measures no depths
   std::vector<std::string> models{};  ///< of a segmentation camera: those that labels 1, 2, … show
+  std::uint64_t joints = 0;           ///< it is behind so many of SutInfo::joints
 };
 /// How the driver of a sensor stamps and delivers its samples.
 struct DriverInfo {
@@ -127,6 +129,16 @@ struct ControllerInfo {
 
   friend bool operator==(const ControllerInfo&, const ControllerInfo&) = default;
 };
+/// A joint of a UAV (uav::Joint).
+struct JointInfo {
+  std::string name;
+  double p_BJ_m[3] = {};
+  double axis_B[3] = {};
+  double min_rad = 0.0, max_rad = 0.0;
+  double max_rate_rad_s = 0.0;
+
+  friend bool operator==(const JointInfo&, const JointInfo&) = default;
+};
 struct SutInfo {
   std::string uav;
   std::string sut;  ///< name and version that the SUT reported
@@ -160,6 +172,7 @@ struct SutInfo {
   std::string on_setpoint_loss{};                 ///< with a timeout: "keep", "hover", …
   std::optional<ControllerInfo> controller{};     ///< none: its commands are the vehicle's own
   bool as_is = false;  ///< it does not use Tether's library: tether-exec --as-is runs it
+  std::vector<JointInfo> joints{};
 };
 /// A computer whose cores several SUTs share. On a virtual one, while n compute, each gets min(1,
 /// cores / n) of a core; a core with pinned programs is shared by these only. On a real one, its

@@ -174,6 +174,7 @@ struct GroundTruth {
   /// Distance to the nearest surface of anything else; none: not measured, or a record of Tether
   /// 0.1.0.
   std::optional<double> clearance_m{};
+  std::vector<double> joints_rad{};  ///< angles of SutInfo::joints
 };
 
 /// A UAV began to touch something. Topic /contacts/<uav>; log time = ST of the next ground truth,

@@ -20,6 +20,8 @@ class UavTrack {
   /// the attitude along the shortest arc. Up to one ground-truth period before the first or after
   /// the last, that one's pose; beyond that, and for an unknown UAV, none.
   std::optional<uav::Pose> at(SimTime instant) const;
+  /// The angles of its joints, interpolated linearly in the same way.
+  std::vector<double> joints_rad(SimTime instant) const;
 
  private:
   std::vector<const GroundTruth*> truths_;  // by time
@@ -28,6 +30,9 @@ class UavTrack {
 
 /// Of one instant: UavTrack::at.
 std::optional<uav::Pose> pose_at(const Record& record, const std::string& uav, SimTime instant);
+
+/// A camera as it was mounted at that instant: turned by the joints of its UAV.
+SensorInfo mounted_at(const SensorInfo& camera, const Record& record, SimTime instant);
 
 /// Where an anchor is: it stands still, follows a path, or is a UAV.
 class AnchorTrack {

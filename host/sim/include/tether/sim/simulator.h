@@ -31,6 +31,7 @@ struct Snapshot {
 struct GroundTruth {
   SimTime at;
   uav::BodyState body;
+  std::vector<double> joints_rad{};  ///< of the UAV's joints
 };
 
 /// A simulator of UAVs, sensors and world: the host's logical process (paper, Section II).
@@ -62,7 +63,8 @@ class Simulator {
 
   /// Whether UAVs follow any set-point; else only velocities in the heading frame.
   virtual bool takes_setpoints() const { return false; }
-  /// Sets what UAV `uav` follows in every step from `now()` on, until the next call.
+  /// Sets what UAV `uav` follows in every step from `now()` on, until the next call. Joints keep
+  /// their angles if it has none; if it has nothing else, what is flown stays.
   /// @pre the set-point is valid for the UAV, and a velocity in the heading frame unless
   ///   takes_setpoints()
   virtual void apply(std::size_t uav, const uav::Setpoint& setpoint) = 0;

@@ -14,6 +14,7 @@
 #include <tether/base/warning.h>
 #include <tether/energy/meter.h>
 #include <tether/uav/catalogue.h>
+#include <tether/uav/joint.h>
 #include <tether/uav/math.h>
 #include <tether/uav/multirotor.h>
 #include <tether/uav/path.h>
@@ -106,6 +107,7 @@ struct Collision {
   uav::Pose X_LC;
   Geometry geometry;
   double friction = 1.0;
+  double intensity = 0.0;  ///< of the light of a lidar that comes back; not negative
 };
 
 struct Link {
@@ -234,7 +236,7 @@ struct ScanModel {
 
 struct Sensor {
   std::string name;
-  uav::Pose X_BS;               ///< in the UAV's body frame
+  uav::Pose X_BS;               ///< in the UAV's body frame, while its joints are at 0
   double update_rate_hz = 0.0;  ///< SDF's <update_rate>; 0: none given
   /// In the order of uav::SensorKind.
   std::variant<CameraModel, ImuModel, RangeModel, NavSatModel, MagnetometerModel, BarometerModel,
@@ -242,6 +244,8 @@ struct Sensor {
       model;
   FileLocation declared_at{};  ///< in its SDF file; empty: in none
   uav::DriverModel driver{};   ///< how its samples are stamped and delivered
+  /// It is behind so many joints of its UAV. Only cameras, rangefinders and lidars are.
+  std::size_t joints = 0;
   uav::SensorKind kind() const { return static_cast<uav::SensorKind>(model.index()); }
 };
 
@@ -264,6 +268,7 @@ struct Uav {
   std::optional<energy::Battery> battery{};
   std::optional<energy::Model> energy{};  ///< none: energy is not simulated
   std::vector<Payload> payloads{};
+  std::vector<uav::Joint> joints{};  ///< at most uav::kMaxJoints
 };
 
 /// An anchor: a model of the world, or a UAV, that SUTs receive in their catalogue.

@@ -27,7 +27,6 @@ const Effects kEffectOfElement = {
     {"fog", can_change(Consequence::kLooksDifferent)},
     {"particle_emitter", can_change(Consequence::kLooksDifferent)},
     {"projector", Consequence::kLooksDifferent},
-    {"laser_retro", Consequence::kNoEffect},
     {"enable_wind", Consequence::kBehavesDifferent},
     {"gravity", Consequence::kBehavesDifferent},
     {"joint", Consequence::kBehavesDifferent},

@@ -4,7 +4,9 @@
 #include "files/sdf_source.h"
 
 #include <initializer_list>
+#include <map>
 #include <string>
+#include <vector>
 
 #include <ignition/math/Color.hh>
 #include <ignition/math/Pose3.hh>
@@ -65,6 +67,15 @@ uav::MultirotorParameters read_airframe(const SdfSource& source, const sdf::Elem
 
 /// The battery of a UAV by a battery plugin of its model; none if it has none.
 std::optional<energy::Battery> read_battery(const SdfSource& source, const sdf::ElementPtr& model);
+
+/// The joints of a UAV that its program can turn, a chain from the body outwards, and behind how
+/// many of them each link is that hangs on the body.
+struct Joints {
+  std::vector<uav::Joint> chain;
+  std::map<std::string, std::size_t> behind;
+};
+Joints read_joints(const SdfSource& source, const sdf::Model& model, const std::string& body,
+                   const uav::Pose& X_BM);
 
 uav::Pose start_pose(const UavPlacement& placement);
 /// The UAV of a model file, without a name or place.

@@ -70,6 +70,23 @@ double read_friction(const sdf::Collision& collision) {
   return mu ? mu->Get<double>() : Collision{}.friction;
 }
 
+/// <laser_retro> of the collision, else of the link's first visual that has one; else the
+/// brightness of the first visual's colour, 0 to 1.
+double read_intensity(const sdf::ElementPtr& collision, const sdf::Link& link,
+                      const std::vector<Visual>& visuals) {
+  const auto retro = [](const sdf::ElementPtr& element) {
+    return element->HasElement("laser_retro")
+               ? std::optional(std::max(0.0, element->Get<double>("laser_retro")))
+               : std::nullopt;
+  };
+  if (const auto own = retro(collision)) return *own;
+  for (std::uint64_t i = 0; i < link.VisualCount(); ++i)
+    if (const auto shown = retro(link.VisualByIndex(i)->Element())) return *shown;
+  if (visuals.empty()) return 0.0;
+  const auto& [red, green, blue] = visuals.front().material.diffuse_rgb;
+  return (red + green + blue) / 3.0;
+}
+
 void read_inertial(const ignition::math::Inertiald& inertial, Link& link) {
   const auto& mass_matrix = inertial.MassMatrix();
   link.mass_kg = mass_matrix.Mass();
@@ -135,7 +152,8 @@ Link read_link(const SdfSource& source, const sdf::Link& link, const WarningSink
       const auto geometry = read_geometry(source, *collision.Geom(), warn);
       if (geometry)
         result.collisions.push_back({collision.Name(), resolved_pose(source, collision), *geometry,
-                                     read_friction(collision)});
+                                     read_friction(collision),
+                                     read_intensity(collision.Element(), link, result.visuals)});
     });
   }
   return result;

@@ -146,11 +146,11 @@ TEST(SdfWarning, NamesEveryElementAndLoadsTheRest) {
   const Loaded loaded = load_content(link(R"(
       <visual name='a'><geometry><heightmap><uri>h.png</uri></heightmap></geometry></visual>
       <visual name='b'><geometry><sphere><radius>1</radius></sphere></geometry>
-        <laser_retro>1</laser_retro></visual>
+        <visibility_flags>1</visibility_flags></visual>
       <enable_wind>true</enable_wind>)"));
   EXPECT_EQ(loaded.warnings.size(), 3u);
   EXPECT_THAT(loaded.warnings,
-              Contains(Field("subject", &Warning::subject, "<laser_retro> of visual 'b'")));
+              Contains(Field("subject", &Warning::subject, "<visibility_flags> of visual 'b'")));
   ASSERT_EQ(loaded.world.models.at(0).links.at(0).visuals.size(), 1u);
   EXPECT_EQ(loaded.world.models[0].links[0].visuals[0].name, "b");
 }

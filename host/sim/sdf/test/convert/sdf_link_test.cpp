@@ -118,5 +118,29 @@ TEST(SdfLink, ReadsInertiaAboutPrincipalAxes) {
   EXPECT_NEAR(along({half, half, 0}), 2.5, 1e-9);
 }
 
+TEST(SdfLink, ReflectsAsItsCollisionOrVisualSays) {
+  const auto intensity = [](const std::string& of_collision, const std::string& visuals) {
+    const ScratchFolder folder;
+    const std::string sdf =
+        link_sdf(visuals +
+                 "<collision name='c'><geometry><sphere><radius>0.25</radius></sphere>"
+                 "</geometry>" +
+                 of_collision + "</collision>");
+    const auto loaded = load({folder.write("w.sdf", sdf), {}, {}});
+    EXPECT_THAT(loaded.warnings, IsEmpty());
+    return loaded.world.models.at(0).links.at(0).collisions.at(0).intensity;
+  };
+  const std::string grey =
+      "<visual name='v'><geometry><sphere><radius>0.25</radius></sphere></geometry>"
+      "<material><diffuse>0.25 0.5 0 1</diffuse></material></visual>";
+  const std::string retro =
+      "<visual name='r'><geometry><sphere><radius>0.25</radius></sphere></geometry>"
+      "<laser_retro>120</laser_retro></visual>";
+  EXPECT_EQ(intensity("<laser_retro>7</laser_retro>", grey + retro), 7.0);
+  EXPECT_EQ(intensity("", grey + retro), 120.0);
+  EXPECT_NEAR(intensity("", grey), 0.25, 1e-6);
+  EXPECT_EQ(intensity("", ""), 0.0);
+}
+
 }  // namespace
 }  // namespace tether::sim

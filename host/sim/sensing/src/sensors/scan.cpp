@@ -64,8 +64,9 @@ double farthest_read_m(const ScanModel& scan) {
 }
 
 uav::ScanSample measure_scan(const ScanModel& scan, std::span<const double> distances_m,
-                             const MeasurementKey& key) {
-  uav::ScanSample sample{key.at, key.index, std::vector<float>(distances_m.size())};
+                             const MeasurementKey& key, std::span<const float> intensities) {
+  uav::ScanSample sample{key.at, key.index, std::vector<float>(distances_m.size()),
+                         std::vector<float>(intensities.size())};
   const auto rows = static_cast<std::size_t>(scan.rays.rows);
   const auto columns = static_cast<std::size_t>(scan.rays.columns);
   for (std::size_t i = 0; i < distances_m.size(); ++i)
@@ -75,6 +76,10 @@ uav::ScanSample measure_scan(const ScanModel& scan, std::span<const double> dist
                   sample.ranges_m);
   for (float& range_m : sample.ranges_m) range_m = reading_m(scan, range_m);
   drop(scan.dropout_probability, key, sample.ranges_m);
+  for (std::size_t i = 0; i < intensities.size(); ++i) {
+    const std::size_t ray = i % rows * columns + i / rows;
+    if (std::isfinite(sample.ranges_m[ray])) sample.intensities[ray] = intensities[i];
+  }
   return sample;
 }
 

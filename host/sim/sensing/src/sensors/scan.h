@@ -23,7 +23,8 @@ double farthest_read_m(const ScanModel& scan);
 
 /// The sample of a lidar from the true distances along `rays_of` [m] (infinite: no hit), with
 /// dropouts, noise, resolution and limits: one bias for the whole scan, white noise for each ray.
+/// `intensities`: of what each ray meets; empty: not known.
 uav::ScanSample measure_scan(const ScanModel& scan, std::span<const double> distances_m,
-                             const MeasurementKey& key);
+                             const MeasurementKey& key, std::span<const float> intensities = {});
 
 }  // namespace tether::sim

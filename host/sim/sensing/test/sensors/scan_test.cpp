@@ -12,6 +12,7 @@ namespace {
 
 using ::testing::Each;
 using ::testing::ElementsAre;
+using ::testing::IsEmpty;
 using uav::Vec3;
 
 constexpr double kNothing_m = std::numeric_limits<double>::infinity();
@@ -94,6 +95,14 @@ TEST(Scan, RaysDropOutWithTheirProbability) {
   scan.dropout_probability = 1.0;
   EXPECT_THAT(ranges_of(scan, std::vector<double>(20'000, 1.0)),
               Each(std::numeric_limits<float>::infinity()));
+}
+
+// Two columns of two rows.
+TEST(Scan, HasTheIntensityOfEachRangeAndNoneWhereThereIsNone) {
+  const std::vector<float> intensities{0.25F, 0.5F, 0.75F, 1.0F};
+  const auto scan = measure_scan(scan_of(2, 2), std::vector{1.0, 1.5, 5.0, 0.1}, {}, intensities);
+  EXPECT_THAT(scan.intensities, ElementsAre(0.25F, 0.0F, 0.5F, 0.0F));
+  EXPECT_THAT(measure_scan(scan_of(2, 2), std::vector(4, 1.0), {}).intensities, IsEmpty());
 }
 
 }  // namespace

@@ -250,6 +250,10 @@ double tether_sensor_rate_hz(const tether_sensor* sensor) TETHER_NOEXCEPT;
 /// @param sensor  the sensor  @param[out] out  X_BS
 /// @return TETHER_OK or TETHER_INVALID
 tether_status tether_sensor_mounting(const tether_sensor* sensor, tether_pose* out) TETHER_NOEXCEPT;
+/// How many of the UAV's joints turn a sensor: the first ones, see tether_get_joint(). Its mounting
+/// is that of joints at 0.
+/// @param sensor  the sensor  @return the number; 0 if it does not turn, or if `sensor` is NULL
+size_t tether_sensor_joints(const tether_sensor* sensor) TETHER_NOEXCEPT;
 /// Optics of a camera of any kind.
 /// @param sensor  the sensor  @param[out] out  its model  @param size  sizeof *out
 /// @return TETHER_OK, or TETHER_INVALID if the sensor is not a camera

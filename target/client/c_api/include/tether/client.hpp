@@ -210,8 +210,7 @@ class Vehicle {
     ImageInfo info{};
     const tether_status got =
         tether_read_camera_into(get(), sensor, to_c(read), rgb, capacity, &info, sizeof info);
-    if (got != TETHER_OK) return Failure::last(got);
-    return info;
+    return got == TETHER_OK ? Result<ImageInfo>(info) : Result<ImageInfo>(Failure::last(got));
   }
   /// Lets measurements of a periodic sensor wait: reads get the oldest.
   /// @param sensor  its name  @param depth  how many wait  @return as tether_set_queue()
@@ -260,21 +259,23 @@ class Vehicle {
   }
   /// Reads a lidar into the caller's memory.
   /// @param sensor  its name  @param[out] ranges_m  the distances  @param capacity  of them
-  /// @param read  which scan  @return as tether_read_scan()
+  /// @param read  which  @param[out] intensities  of each, or nullptr  @return tether_read_scan()'s
   Result<ScanInfo> read_scan(const char* sensor, float* ranges_m, std::size_t capacity,
-                             Read read = Read::kNext) noexcept {
+                             Read read = Read::kNext, float* intensities = nullptr) noexcept {
     ScanInfo info{};
     const tether_status got =
-        tether_read_scan(get(), sensor, to_c(read), ranges_m, capacity, &info, sizeof info);
-    if (got != TETHER_OK) return Failure::last(got);
-    return info;
+        intensities == nullptr
+            ? tether_read_scan(get(), sensor, to_c(read), ranges_m, capacity, &info, sizeof info)
+            : tether_read_scan_intensities(get(), sensor, to_c(read), ranges_m, intensities,
+                                           capacity, &info, sizeof info);
+    return got == TETHER_OK ? Result<ScanInfo>(info) : Result<ScanInfo>(Failure::last(got));
   }
   /// Reads the battery. @return as tether_read_battery()
   Result<BatterySample> read_battery() noexcept {
     BatterySample sample{};
     const tether_status got = tether_read_battery(get(), &sample, sizeof sample);
-    if (got != TETHER_OK) return Failure::last(got);
-    return sample;
+    return got == TETHER_OK ? Result<BatterySample>(sample)
+                            : Result<BatterySample>(Failure::last(got));
   }
 
   /// Delivers the images of a camera, in a thread of the library. Needs tether-exec.
@@ -355,6 +356,14 @@ class Vehicle {
     FlightLimits limits{};
     tether_get_flight_limits(get(), &limits, sizeof limits);
     return limits;
+  }
+  /// @return as tether_joint_count()
+  std::size_t joint_count() const noexcept { return tether_joint_count(get()); }
+  /// @param index  of a joint, from 0  @return the joint; Code::kInvalid if there is none
+  Result<Joint> joint_at(std::size_t index) const noexcept {
+    Joint joint{};
+    const tether_status got = tether_get_joint(get(), index, &joint, sizeof joint);
+    return got == TETHER_OK ? Result<Joint>(joint) : Result<Joint>(Failure::last(got));
   }
   /// @return the number of other UAVs
   std::size_t peer_count() const noexcept { return tether_peer_count(get()); }

@@ -103,10 +103,11 @@ typedef struct tether_scan_info {
 
 /// A scan that a subscription shows. May grow.
 typedef struct tether_scan {
-  int64_t sampled_at_ns;  ///< ST of the last column [ns]
-  uint64_t index;         ///< number of the measurement of this sensor
-  uint64_t rays;          ///< how many distances there are
-  const float* ranges_m;  ///< as tether_read_scan() has them
+  int64_t sampled_at_ns;     ///< ST of the last column [ns]
+  uint64_t index;            ///< number of the measurement of this sensor
+  uint64_t rays;             ///< how many distances there are
+  const float* ranges_m;     ///< as tether_read_scan() has them
+  const float* intensities;  ///< as tether_read_scan_intensities() has them; NULL: not known
 } tether_scan;
 
 /// Reads a lidar into the caller's memory.
@@ -120,6 +121,21 @@ typedef struct tether_scan {
 tether_status tether_read_scan(tether_vehicle* vehicle, const char* sensor, tether_read_mode mode,
                                float* ranges_m, size_t capacity, tether_scan_info* info,
                                size_t info_size) TETHER_NOEXCEPT;
+
+/// Reads a lidar as tether_read_scan() does, with the intensity of each ray.
+/// @param vehicle  the UAV  @param sensor  its name  @param mode  which scan
+/// @param[out] ranges_m  distances  @param[out] intensities  of each distance, how much of the
+/// light
+///   comes back (docs/guide/sensors.md); 0 where it is not finite; NaN if the simulator does not
+///   know it
+/// @param capacity  floats that each of them has room for
+/// @param[out] info  the description, or NULL  @param info_size  sizeof *info
+/// @return as tether_read_scan()
+tether_status tether_read_scan_intensities(tether_vehicle* vehicle, const char* sensor,
+                                           tether_read_mode mode, float* ranges_m,
+                                           float* intensities, size_t capacity,
+                                           tether_scan_info* info,
+                                           size_t info_size) TETHER_NOEXCEPT;
 
 /// @}
 

@@ -188,6 +188,8 @@ class Sensor {
     (void)tether_sensor_mounting(sensor_, &X_BS);  // fails for NULL only
     return X_BS;
   }
+  /// @return how many of the UAV's joints turn it: the first ones
+  std::size_t joints() const noexcept { return tether_sensor_joints(sensor_); }
   /// @return the optics; Code::kInvalid if this is not a camera
   Result<CameraModel> camera_model() const noexcept {
     CameraModel model{};
@@ -331,6 +333,7 @@ using MagnetometerSample = tether_magnetometer_sample;  ///< measurement of a ma
 using BarometerSample = tether_barometer_sample;        ///< measurement of a barometer
 using OdometrySample = tether_odometry_sample;          ///< estimate of pose and velocity
 using Setpoint = tether_setpoint;                       ///< any command
+using Joint = tether_joint;                             ///< what turns a part of the UAV
 using FlightLimits = tether_flight_limits;              ///< what a UAV can be commanded
 
 /// When a measurement was taken, or the battery was read.

@@ -34,6 +34,8 @@ struct ScanSample {
   /// Row by row from the lowest elevation; +inf: nothing within range, −inf: closer than the
   /// minimum (REP-117).
   std::vector<float> ranges_m;
+  /// Of each range, how much of the light comes back; 0 where it is not finite. Empty: not known.
+  std::vector<float> intensities{};
 };
 
 }  // namespace tether::uav

@@ -28,6 +28,12 @@ class RayCaster {
   /// How far each ray goes until it meets something; infinite where it meets nothing [m].
   /// @pre as many distances as rays. @throws Error(kSetup) when the back end is lost.
   virtual void cast(const RayBundle& bundle, std::span<double> distances_m) = 0;
+  /// The same with the Collision::intensity of what each ray meets, 0 of nothing. False: not known,
+  /// and nothing was cast.
+  virtual bool cast_with_intensities(const RayBundle& /*bundle*/, std::span<double> /*distances_m*/,
+                                     std::span<float> /*intensities*/) {
+    return false;
+  }
 
  protected:
   RayCaster() = default;

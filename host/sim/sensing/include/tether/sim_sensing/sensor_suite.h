@@ -70,7 +70,7 @@ class SensorSuite {
   void cast(const ScanModel& scan, const std::vector<double>& state, std::size_t uav,
             const Sensor& mounted);
   void cast(const RangeModel& range, const std::vector<double>& state, std::size_t uav,
-            const uav::Pose& X_BS);
+            const Sensor& mounted);
 
   const World& world_;
   StateLayout layout_;
@@ -78,6 +78,7 @@ class SensorSuite {
   std::uint64_t seed_ = 0;
   std::vector<uav::Pose> X_WB_;
   std::vector<double> distances_m_;
+  std::vector<float> intensities_;                          // of the last scan; empty: not known
   std::map<const Sensor*, std::vector<uav::Vec3>> rays_S_;  // of lidars, column by column
   std::set<const Sensor*> seen_;                            // cameras with a picture
   SimulatorWork work_;                                      // on the caller's thread

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include <tether/sim/world.h>
@@ -25,8 +26,8 @@ std::size_t shutter_steps(const CameraModel& camera, Duration step);
 
 /// The layout of `Snapshot::state` of every back end whose sensors are made by the sensing library:
 /// position and quaternion of each of `moving_bodies` (7 numbers each), then the BodyMotion of each
-/// UAV (12 numbers each), then the positions and quaternions again at each of the `shutter_steps`
-/// past steps, oldest first.
+/// UAV (12 numbers each) and the angles of all joints, then the positions, quaternions and angles
+/// again at each of the `shutter_steps` past steps, oldest first.
 ///
 /// Reads such states, as StateRecorder captures them. A value; safe from any thread.
 class StateLayout {
@@ -41,18 +42,25 @@ class StateLayout {
   std::size_t size() const;
   /// Where in a state the motion of UAV `uav` begins, and the first of the past poses.
   std::size_t motion_at(std::size_t uav) const;
-  std::size_t past_at() const { return motion_at(uavs_); }
+  std::size_t past_at() const { return motion_at(uavs_) + joints(); }
+  std::size_t joints() const { return first_joint_.back(); }  ///< of all UAVs together
 
   uav::Pose pose_of(const std::vector<double>& state, std::size_t body) const;
   BodyMotion motion_of(const std::vector<double>& state, std::size_t uav) const;
   /// Where a body was so many steps before the capture. @pre within the longest shutter.
   uav::Pose past_pose_of(const std::vector<double>& state, std::size_t body,
                          std::size_t steps_ago) const;
+  /// Where a sensor of a UAV was, in its body, so many steps before the capture.
+  uav::Pose mounting(const std::vector<double>& state, const World& world, std::size_t uav,
+                     const Sensor& sensor, std::size_t steps_ago = 0) const;
+  /// How many numbers the past of one step has.
+  std::size_t row_size() const;
 
  private:
   std::size_t bodies_;
   std::size_t uavs_;
   std::size_t past_steps_;
+  std::vector<std::size_t> first_joint_;  // of each UAV, and the end
 };
 
 }  // namespace tether::sim

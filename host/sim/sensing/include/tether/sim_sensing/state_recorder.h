@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include <tether/sim/joint_drives.h>
 #include <tether/sim/world.h>
 #include <tether/sim_sensing/state_layout.h>
 
@@ -24,6 +25,9 @@ class StateRecorder {
   /// A step begins with these poses. Steps that are further back than `layout().past_steps()` at
   /// the next capture may be left out.
   void begin_step(std::span<const uav::Pose> X_WB);
+  /// Turned by each step that begins.
+  JointDrives& joints() { return joints_; }
+  const JointDrives& joints() const { return joints_; }
   /// The state with these poses and, of each UAV, this motion. Allocates nothing for a `state` that
   /// was captured before.
   void capture(std::span<const uav::Pose> X_WB, std::span<const BodyMotion> motions,
@@ -31,6 +35,7 @@ class StateRecorder {
 
  private:
   StateLayout layout_;
+  JointDrives joints_;
   std::size_t oldest_ = 0;
   std::vector<double> past_;  // a ring of steps
 };

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -102,6 +103,45 @@ TEST_P(SimulatorContract, FollowsSetpointsOfEveryLevelIfItTakesThem) {
     simulator->advance_to(at(std::chrono::seconds(1)));
     EXPECT_TRUE(level.is_followed(simulator->ground_truth(0).body)) << level.setpoint.mask;
   }
+}
+
+/// The camera of the test world behind a joint, or mounted as this joint would turn it.
+inline World world_with_joint(std::optional<double> mounted_rad) {
+  World world = test_world();
+  world.models.push_back(box_model("wall", {5.0, 0.0, 1.0}, {0.2, 6.0, 2.0}, {0.8, 0.2, 0.2}));
+  Uav& uav = world.uavs[0];
+  const std::vector<uav::Joint> joints = {{"yaw", {0.1, 0, 0}, {0, 0, 1}, -1, 1, 2.0}};
+  for (const std::size_t sensor : {kCamera, kRange}) {
+    uav::Pose& X_BS = uav.sensors[sensor].X_BS;
+    if (mounted_rad)
+      X_BS = turned(joints, std::vector{*mounted_rad}, X_BS);
+    else
+      uav.sensors[sensor].joints = 1;
+  }
+  if (!mounted_rad) uav.joints = joints;
+  return world;
+}
+
+// At 2 rad/s, it needs 0.2 s.
+TEST_P(SimulatorContract, JointsTurnSensorsAtTheirRateAndLeaveTheFlight) {
+  const auto turning = make(world_with_joint(std::nullopt));
+  const auto mounted = make(world_with_joint(0.4));
+  for (const auto& simulator : {turning, mounted}) simulator->reset(1);
+  const uav::Setpoint ahead = uav::to_setpoint({{0.5, 0, 0}, 0.1});
+  for (const auto& simulator : {turning, mounted}) simulator->apply(0, ahead);
+  turning->apply(0, {.mask = uav::kJoints, .joints_rad = {0.4}});
+  EXPECT_EQ(turning->ground_truth(0).joints_rad, std::vector{0.0});
+  turning->advance_to(at(std::chrono::milliseconds(100)));
+  EXPECT_NEAR(turning->ground_truth(0).joints_rad.at(0), 0.2, 1e-9);
+  for (const auto& simulator : {turning, mounted})
+    simulator->advance_to(at(std::chrono::milliseconds(300)));
+  EXPECT_EQ(turning->ground_truth(0).joints_rad, std::vector{0.4});
+  EXPECT_TRUE(mounted->ground_truth(0).joints_rad.empty());
+  EXPECT_EQ(turning->ground_truth(0).body.p_WB, mounted->ground_truth(0).body.p_WB);
+  EXPECT_NEAR(measure_now<uav::RangeSample>(*turning, kRange).range_m,
+              measure_now<uav::RangeSample>(*mounted, kRange).range_m, 1e-9);
+  EXPECT_EQ(measure_now<uav::CameraSample>(*turning, kCamera).rgb,
+            measure_now<uav::CameraSample>(*mounted, kCamera).rgb);
 }
 
 TEST_P(SimulatorContract, SamplesCarryInstantAndIndex) {
