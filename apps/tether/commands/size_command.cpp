@@ -1,34 +1,26 @@
 #include "commands/commands.h"
-#include "commands/size_flights.h"
-#include "commands/size_uavs.h"
+#include "commands/size_axis.h"
+#include "commands/size_trials.h"
 #include "options/junit_option.h"
 #include "options/refuse_option.h"
-#include "options/trial_options.h"
-#include "reading/file_kind.h"
+#include "terminal/print.h"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
+#include <memory>
 #include <string>
-#include <variant>
-#include <vector>
 
 #include <fmt/format.h>
 
 #include <tether/base/error.h>
-#include <tether/os/program.h>
+#include <tether/os/text_file.h>
+#include <tether/report/gnuplot.h>
 #include <tether/report/junit.h>
-#include <tether/report/size_report.h>
-#include <tether/runner/target_choice.h>
-#include <tether/scenario/shipped_files.h>
-#include <tether/scenario/slowness.h>
 
-/// `tether size`: checks the question, flies until it is answered, and writes the answer.
+/// `tether size`: flies until the question is answered, and writes the answer.
 namespace tether::app {
 
 namespace {
-
-constexpr double kLargestFactor = 1e4;  // as in files
 
 void require_share(const std::string& option, double share) {
   if (share > 0.0 && share < 1.0) return;
@@ -39,138 +31,44 @@ void require_share(const std::string& option, double share) {
                                          : "Use a share such as 0.9."));
 }
 
-sizing::Question question_of(const SizeOptions& options) {
-  const std::vector<double> between = options.between.value_or(std::vector<double>{1.0, 40.0});
-  const sizing::Question question{.success = options.success,
-                                  .confidence = options.confidence,
-                                  .interval = options.interval.value_or(1.3),
-                                  .least = between.at(0),
-                                  .most = between.at(1)};
-  if (!(question.interval >= 1.05))
-    refuse_option("--interval",
-                  fmt::format("{} is less than 1.05. It is the upper bound of the answer "
-                              "divided by its lower bound, such as 1.3.",
-                              question.interval));
-  if (!(question.least > 0.0 && question.least < question.most))
-    refuse_option("--between",
-                  fmt::format("{},{} is not a range of slowdowns. The first must be above 0 "
-                              "and less than the second, as in 1,40.",
-                              question.least, question.most));
-  if (question.most < question.interval * question.least)
-    refuse_option("--between",
-                  fmt::format("{},{} is narrower than --interval {}. Use a wider range, "
-                              "or a smaller --interval.",
-                              question.least, question.most, question.interval));
-  require_enough_trials(options, 1.0 - question.confidence);
-  return question;
+void write_answer(const report::SizeAnswer& answer, const std::filesystem::path& out) {
+  os::write_file_atomically(out / kSizeFile, answer.json);
+  print(report::answer_text(answer.answers, answer.advice, markup_of_stdout()));
+  os::write_file_atomically(out / kSizeDrawing, report::draw_svg(answer.plot));
+  os::write_file_atomically(out / campaign::kReportFile, report::size_page(answer));
+  fmt::print("Page: {}\nDrawing: {}\nNumbers: {}\n", (out / campaign::kReportFile).string(),
+             (out / kSizeDrawing).string(), (out / kSizeFile).string());
 }
 
-report::Board board_of(const scenario::ShippedFiles& shipped, const std::filesystem::path& given,
-                       const scenario::Scenario& scenario, const scenario::Condition& condition) {
-  if (std::holds_alternative<scenario::SshAddress>(runner::parse_target_choice(given.string())))
-    refuse_option(
-        "--target",
-        fmt::format("{} is a real board, which cannot be slowed down. Calibrate a virtual "
-                    "target against it (tether-sut calibrate --write-target FILE), and "
-                    "give that file.",
-                    given.string()));
-  const std::filesystem::path file = shipped.find(scenario::ShippedKind::kTarget, given);
-  require_kind(file, FileKind::kTarget);
-  const auto [factor, bounds] =
-      scenario::slowness(scenario::load_target(file), scenario, condition);
-  report::Board board{.name = file.filename().string(), .slowdown = factor};
-  if (bounds) {
-    board.low = bounds->first;
-    board.high = bounds->second;
-  }
-  return board;
-}
-
-/// What --unsynchronised names: a condition that differs in nothing but its policy.
-void require_comparable(const scenario::Condition& own, const scenario::Condition& other) {
-  const bool is_free = other.policy == scenario::Policy::kFreeRunning &&
-                       own.policy == scenario::Policy::kConservativeBarrier;
-  if (!is_free)
-    refuse_option("--unsynchronised",
-                  fmt::format("\"{}\" must have policy = \"free_running\", and \"{}\" "
-                              "policy = \"conservative_barrier\".",
-                              other.name, own.name));
-  if (computer_of(own, 0).clock != computer_of(other, 0).clock)
-    refuse_option("--unsynchronised",
-                  fmt::format("\"{}\" and \"{}\" must have the same clock and factor.", other.name,
-                              own.name));
-}
-
-struct Plan {
-  report::SizeReport report;
-  SizeFlights::Setup flights;
-};
-
-/// Reads and checks everything that does not need the output folder.
-Plan make_plan(const SizeOptions& options) {
-  Plan plan;
-  plan.report.question = question_of(options);
-  plan.report.most_flights = options.max_trials;
-  const auto shipped = scenario::ShippedFiles::of_program(os::own_file());
-  scenario::Scenario scenario = load_sized_scenario(options);
-  const scenario::Condition own = scenario::pick_condition(scenario, options.condition);
-  if (own.policy == scenario::Policy::kFreeRunning)
-    refuse_option("--condition",
-                  fmt::format("\"{}\" is free-running, and its flights say nothing about the "
-                              "computer. Size a condition with policy = \"conservative_barrier\", "
-                              "and name this one with --unsynchronised to compare both.",
-                              own.name));
-  if (computer_of(own, 0).clock.factor * plan.report.question.most > kLargestFactor)
-    refuse_option("--between",
-                  fmt::format("{} times the factor of condition \"{}\" is more than {}.",
-                              plan.report.question.most, own.name, kLargestFactor));
-  for (const std::filesystem::path& target : options.targets)
-    plan.report.boards.push_back(board_of(shipped, target, scenario, own));
-  plan.report.scenario = scenario.name;
-  plan.report.description = scenario.description;
-  plan.flights.conditions = {own};
-  if (!options.unsynchronised.empty()) {
-    plan.flights.conditions.push_back(scenario::pick_condition(scenario, options.unsynchronised));
-    require_comparable(own, plan.flights.conditions.back());
-  }
-  plan.flights.scenario = std::move(scenario);
-  return plan;
-}
-
-int code_of(const report::SizeReport& report) {
-  if (report::has_unseen_time(report)) return exit_code(ErrorCode::kSetup);
+int code_of(const report::SizeAnswer& answer) {
+  if (std::ranges::any_of(answer.trials, &campaign::TrialResult::has_unseen_time))
+    return exit_code(ErrorCode::kSetup);
   const bool is_good =
-      report.boards.empty()
-          ? report::is_answered(report)
-          : std::ranges::all_of(report.boards, [&](const report::Board& board) {
-              return report::verdict(board, report) == report::BoardVerdict::kSuffices;
-            });
+      answer.boards.empty()
+          ? answer.is_answered
+          : std::ranges::all_of(answer.boards, &report::SizeAnswer::OfBoard::suffices);
   return is_good ? 0 : 1;
 }
 
-int find_size(const SizeOptions& options, const std::stop_token& stop) {
-  Plan plan = make_plan(options);
+int find(const SizeOptions& options, const std::stop_token& stop) {
+  require_share("--success", options.success);
+  require_share("--confidence", options.confidence);
+  const std::unique_ptr<SizeAxis> axis =
+      options.axis == "uavs" ? uavs_axis(options) : slowdown_axis(options);
   const std::filesystem::path out =
-      options.out.empty() ? std::filesystem::path("out/size") / plan.report.scenario : options.out;
-  const sizing::CurveGrid grid(plan.report.question);
-  SizeFlights flights(options, plan.flights, grid, out, stop);
-  report::SizeReport& report = plan.report;
-  if (const auto end = flights.fly(report); end != SizeTrials::End::kAnswered)
-    return flights.say_why(end);
-  report.pace = report::pace_near_answer(report);
-  write_answer(
-      {report::size_answers(report), report::size_advice(report), report::size_json(report),
-       report::size_plot(report), report::size_page(report), report::to_junit(report, out)},
-      out, options.junit);
-  return code_of(report);
+      options.out.empty() ? std::filesystem::path("out/size") / axis->folder : options.out;
+  SizeTrials trials(options, *axis, out, stop);
+  if (const auto end = trials.fly(); end != sizing::SearchEnd::kAnswered)
+    return trials.say_why(end);
+  const report::SizeAnswer answer = axis->answer(trials.settings(), trials.not_flown());
+  write_answer(answer, out);
+  if (!options.junit.empty())
+    os::write_file_atomically(options.junit, report::to_junit(answer, out));
+  return code_of(answer);
 }
 
 int size(const SizeOptions& options, const std::stop_token& stop) {
-  return with_junit(options.junit, options.scenario.string(), [&] {
-    require_share("--success", options.success);
-    require_share("--confidence", options.confidence);
-    return options.axis == "uavs" ? find_uavs(options, stop) : find_size(options, stop);
-  });
+  return with_junit(options.junit, options.scenario.string(), [&] { return find(options, stop); });
 }
 
 Options size_rows(SizeOptions& o) {

@@ -23,8 +23,7 @@
 #include <tether/os/program.h>
 #include <tether/os/shell_word.h>
 #include <tether/os/terminal.h>
-#include <tether/os/text_file.h>
-#include <tether/report/gnuplot.h>
+#include <tether/report/verdict.h>
 #include <tether/runner/campaign_trials.h>
 #include <tether/runner/trial_folder.h>
 #include <tether/scenario/decidable.h>
@@ -33,9 +32,6 @@
 namespace tether::app {
 
 namespace {
-
-/// Gives up after so many failed flights.
-constexpr std::size_t kMostFailedFlights = 3;
 
 campaign::OpenMode open_mode(const SizeOptions& options) {
   return options.force    ? campaign::OpenMode::kReplace
@@ -71,15 +67,21 @@ void require_enough_trials(const SizeOptions& options, double miss) {
                             options.confidence, least));
 }
 
-SizeTrials::SizeTrials(const SizeOptions& options, scenario::Campaign campaign,
-                       const std::filesystem::path& out, std::stop_token stop,
-                       std::function<std::string(const campaign::TrialPlan&)> name)
+SizeAxis::SizeAxis(const SizeOptions& options, const scenario::Scenario& scenario) {
+  campaign.file = scenario.file;
+  campaign.name = std::string(kSizePrefix) + scenario.name;
+  campaign.description = scenario.description;
+  for (std::uint64_t seed = 1; seed <= options.max_trials; ++seed) campaign.seeds.push_back(seed);
+}
+
+SizeTrials::SizeTrials(const SizeOptions& options, SizeAxis& axis, const std::filesystem::path& out,
+                       std::stop_token stop)
     : options_(options),
-      campaign_(std::move(campaign)),
+      axis_(axis),
+      campaign_(axis.campaign),
       engine_(engine_of(options.engine)),
       jobs_(jobs_of(options.engine, engine_)),
       stop_(std::move(stop)),
-      name_(std::move(name)),
       files_(checked_files(out)),
       settings_(campaign::campaign_settings(
           campaign_, versions_of(campaign_, options.reading, engine_.has_value()), files_)),
@@ -104,56 +106,48 @@ std::vector<std::filesystem::path> SizeTrials::checked_files(const std::filesyst
 }
 
 std::string SizeTrials::text_of(const campaign::TrialPlan& plan) const {
-  return fmt::format("{}, seed {}", name_(plan), plan.seed);
+  return fmt::format("{}, seed {}", axis_.name_of(plan), plan.seed);
 }
 
-SizeTrials::End SizeTrials::fly(const Questions& questions,
-                                const std::function<bool(const campaign::TrialPlan&)>& is_asked) {
+const campaign::TrialPlan& SizeTrials::plan_of(const sizing::Wanted& wanted) const {
+  const auto& [scenario, condition] = axis_.levels[wanted.level];
+  const auto folder = folder_.path() / campaign::trial_folder(scenario, condition, wanted.seed);
+  const auto found = missing_.find(folder);
+  return found != missing_.end()
+             ? *found->second
+             : *std::ranges::find(folder_.finished(), folder, &campaign::TrialPlan::folder);
+}
+
+sizing::SearchEnd SizeTrials::fly() {
+  std::vector<sizing::Wanted> earlier;
   for (const campaign::TrialPlan& plan : folder_.finished()) {
-    if (!is_asked(plan)) continue;
-    take(plan, questions);
-    next_seed_ = std::max(next_seed_, plan.seed + 1);
+    const SizeAxis::Trial trial{plan.scenario->name, plan.condition->name};
+    const auto level =
+        static_cast<std::size_t>(std::ranges::find(axis_.levels, trial) - axis_.levels.begin());
+    if (level < axis_.searched) earlier.push_back({level, plan.seed});
   }
   const scenario::Scenario& last = campaign_.scenarios.back().scenario;
   const campaign::TrialPlan any{
       &last, last.find_condition(campaign_.scenarios.back().conditions.front()), 0, {}};
   const auto at_once = static_cast<std::size_t>(campaign::parallel_trials(any, jobs_));
-  const std::size_t failed_before = not_flown_.size();
-  for (;;) {
-    const std::size_t left = options_.max_trials - (next_seed_ - 1);
-    const std::vector<Wanted> next = questions.next(std::min(at_once, left));
-    if (next.empty()) break;
-    Plans plans;
-    for (const auto& [scenario, condition] : next)
-      plans.push_back(
-          missing_.at(folder_.path() / campaign::trial_folder(scenario, condition, next_seed_++)));
-    if (!run(plans, questions)) return End::kInterrupted;
-    for (const campaign::TrialPlan* plan : plans) take(*plan, questions);
-    if (not_flown_.size() - failed_before >= kMostFailedFlights) return End::kFailing;
-  }
-  return flown_ > 0 && without_value_ == flown_ ? End::kUndecidable : End::kAnswered;
+  const auto take = [this](const sizing::Wanted& wanted) { return this->take(wanted); };
+  const sizing::SearchEnd end = sizing::search(
+      axis_.search(), options_.max_trials, at_once, earlier,
+      [this](std::span<const sizing::Wanted> wanted) { return run(wanted); }, take);
+  if (end != sizing::SearchEnd::kAnswered) return end;
+  const std::vector<sizing::Wanted> also = axis_.also();
+  if (!run(also)) return sizing::SearchEnd::kInterrupted;
+  std::ranges::for_each(also, take);
+  return end;
 }
 
-bool SizeTrials::fly_also(const std::vector<std::pair<Wanted, std::uint64_t>>& trials,
-                          const Questions& questions) {
-  Plans all, missing;
-  for (const auto& [wanted, seed] : trials) {
-    const auto folder =
-        folder_.path() / campaign::trial_folder(wanted.scenario, wanted.condition, seed);
-    if (const auto found = missing_.find(folder); found != missing_.end())
-      missing.push_back(found->second), all.push_back(found->second);
-    else
-      all.push_back(&*std::ranges::find(folder_.finished(), folder, &campaign::TrialPlan::folder));
+bool SizeTrials::run(std::span<const sizing::Wanted> flights) {
+  std::vector<const campaign::TrialPlan*> plans;
+  for (const sizing::Wanted& wanted : flights) {
+    const campaign::TrialPlan& plan = plan_of(wanted);
+    if (missing_.contains(plan.folder)) plans.push_back(&plan);
   }
-  if (!run(missing, questions)) return false;
-  for (const campaign::TrialPlan* plan : all) take(*plan, questions);
-  return true;
-}
-
-bool SizeTrials::run(const Plans& plans, const Questions& questions) {
-  const auto show_it = [&](const campaign::CampaignProgress& progress) {
-    show(progress, questions);
-  };
+  const auto show_it = [&](const campaign::CampaignProgress& progress) { show(progress); };
   const bool is_whole = [&] {
     if (engine_)
       return !shards::fly_by_engine(engine_setup(*engine_, jobs_, folder_.path(), files_), plans, 0,
@@ -169,58 +163,47 @@ bool SizeTrials::run(const Plans& plans, const Questions& questions) {
   return is_whole;
 }
 
-void SizeTrials::take(const campaign::TrialPlan& plan, const Questions& questions) {
+sizing::Flown SizeTrials::take(const sizing::Wanted& wanted) {
+  const campaign::TrialPlan& plan = plan_of(wanted);
   const campaign::TrialResult trial = campaign::read_result(plan.folder);
   if (trial.outcome == campaign::Outcome::kFailed) {
     not_flown_.push_back(fmt::format("{}: {}", text_of(plan), trial.reason));
-    return;
+    return {.is_failed = true};
   }
   ++flown_;
-  if (const std::string why = report::missed_without_value(trial); !why.empty()) {
-    if (without_value_++ == 0) why_without_value_ = why;
-  }
-  questions.take(plan, trial);
+  const std::string why = report::missed_without_value(trial);
+  if (why_without_value_.empty()) why_without_value_ = why;
+  return {.is_copy = axis_.add(wanted.level, trial), .lacks_value = !why.empty()};
 }
 
-void SizeTrials::show(const campaign::CampaignProgress& progress, const Questions& questions) {
+void SizeTrials::show(const campaign::CampaignProgress& progress) {
   if (os::terminal_columns(STDERR_FILENO) > 0) {
     if (progress.latest == nullptr) return;
     line_.show(fmt::format("{}, at most {}; {}; flying {}",
                            counted(flown_ + progress.done, "flight"), options_.max_trials,
-                           questions.so_far(), text_of(*progress.latest)));
+                           axis_.search().so_far(), text_of(*progress.latest)));
   } else if (progress.result != nullptr) {
     say("{}  {}: {}; {}\n", flown_ + progress.done, text_of(*progress.latest),
-        campaign::name(progress.result->outcome), questions.so_far());
+        campaign::name(progress.result->outcome), axis_.search().so_far());
   }
 }
 
-int SizeTrials::say_why(End end) const {
+int SizeTrials::say_why(sizing::SearchEnd end) const {
   for (const std::string& line : not_flown_) complain("tether: " + line);
   const std::string again = fmt::format(
       "tether size {}{} --out {} --resume, with the options of this call",
       os::shell_word(options_.scenario.string()), options_.axis == "uavs" ? " --axis uavs" : "",
       os::shell_word(folder_.path().string()));
-  if (end == End::kUndecidable)
+  if (end == sizing::SearchEnd::kUndecidable)
     say("tether: no flight shows whether the computer is fast enough: all {} reached the goal of "
         "the program, but {}. Correct that, or remove the limit.\n",
         flown_, why_without_value_);
-  else if (end == End::kInterrupted)
+  else if (end == sizing::SearchEnd::kInterrupted)
     say("tether: interrupted after {}; to continue, type: {}\n", counted(flown_, "flight"), again);
   else
     say("tether: {} failed without a result. Fix the cause; to continue, type: {}\n",
         counted(not_flown_.size(), "flight"), again);
   return exit_code(ErrorCode::kSetup);
-}
-
-void write_answer(const SizeAnswer& answer, const std::filesystem::path& out,
-                  const std::filesystem::path& junit) {
-  os::write_file_atomically(out / kSizeFile, answer.json);
-  print(report::answer_text(answer.answers, answer.advice, markup_of_stdout()));
-  os::write_file_atomically(out / kSizeDrawing, report::draw_svg(answer.plot));
-  os::write_file_atomically(out / campaign::kReportFile, answer.page);
-  fmt::print("Page: {}\nDrawing: {}\nNumbers: {}\n", (out / campaign::kReportFile).string(),
-             (out / kSizeDrawing).string(), (out / kSizeFile).string());
-  if (!junit.empty()) os::write_file_atomically(junit, answer.junit);
 }
 
 }  // namespace tether::app

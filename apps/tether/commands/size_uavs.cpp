@@ -1,21 +1,17 @@
-#include "commands/size_uavs.h"
-
-#include "commands/size_trials.h"
-#include "options/junit_option.h"
+#include "commands/size_axis.h"
 #include "options/refuse_option.h"
-#include "options/trial_options.h"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include <tether/base/counted.h>
 #include <tether/os/program.h>
 #include <tether/report/size_report.h>
-#include <tether/report/uavs_report.h>
-#include <tether/scenario/campaign.h>
 #include <tether/scenario/shipped_files.h>
 
 namespace tether::app {
@@ -74,88 +70,65 @@ sizing::UavQuestion question_of_uavs(const SizeOptions& options, std::size_t uav
   return question;
 }
 
-scenario::Campaign campaign_of(const SizeOptions& options, const scenario::Scenario& all,
-                               const std::string& condition, const sizing::UavQuestion& question) {
-  scenario::Campaign campaign;
-  campaign.file = all.file;
-  campaign.name = std::string(kSizePrefix) + all.name;
-  campaign.description = all.description;
-  for (std::uint64_t seed = 1; seed <= options.max_trials; ++seed) campaign.seeds.push_back(seed);
-  for (std::size_t uavs = question.least; uavs <= question.most; ++uavs)
-    campaign.scenarios.push_back({.scenario = load(options, uavs),
-                                  .conditions = {condition},
-                                  .paper_table = "",
-                                  .profile = {},
-                                  .swept_from = all.name});
-  return campaign;
-}
-
-/// The flights: a campaign that sweeps the number of UAVs.
-SizeTrials::Questions questions(report::UavsReport& report, const scenario::Campaign& campaign) {
-  const auto next = [&](std::size_t most) {
-    report.answer = sizing::answer_by_uavs(report.question, report::uav_levels(report.points));
-    std::vector<SizeTrials::Wanted> wanted;
-    if (report.answer.is_decided() || report::copies_in(report) >= report::kMostCopies)
-      return wanted;
-    for (std::size_t i = 0; i < most; ++i) {
-      const std::size_t uavs = report.answer.next[i % report.answer.next.size()];
-      const auto& entry = campaign.scenarios[uavs - report.question.least];
-      wanted.push_back({entry.scenario.name, entry.conditions.front()});
+/// A campaign that sweeps the number of UAVs.
+class UavsAxis final : public SizeAxis {
+ public:
+  UavsAxis(const SizeOptions& options, const scenario::Scenario& all, report::UavsReport report)
+      : SizeAxis(options, all), report_(std::move(report)), search_(report_.question) {
+    folder = all.name + "-uavs";
+    for (std::size_t uavs = report_.question.least; uavs <= report_.question.most; ++uavs) {
+      campaign.scenarios.push_back({.scenario = load(options, uavs),
+                                    .conditions = {report_.condition},
+                                    .paper_table = "",
+                                    .profile = {},
+                                    .swept_from = all.name});
+      levels.push_back({campaign.scenarios.back().scenario.name, report_.condition});
+      report_.points.push_back({{uavs}, {}});
     }
-    return wanted;
-  };
-  const auto take = [&](const campaign::TrialPlan& plan, const campaign::TrialResult& trial) {
-    report.points[plan.scenario->uavs.size() - report.question.least].trials.push_back(trial);
-  };
-  const auto so_far = [&] {
-    const std::size_t carried = report.answer.carried, too_many = report.answer.too_many;
-    std::string known =
-        carried >= report.question.least ? fmt::format(" at least {}", carried) : "";
-    if (too_many <= report.question.most)
-      known += fmt::format("{} fewer than {}", known.empty() ? "" : ",", too_many);
-    return "UAVs that it carries: " + (known.empty() ? "nothing is known yet" : known.substr(1));
-  };
-  return {next, take, so_far};
-}
+    searched = levels.size();
+  }
 
-std::string name_of(const campaign::TrialPlan& plan) {
-  const std::size_t uavs = plan.scenario->uavs.size();
-  return fmt::format("{} UAV{}", uavs, uavs == 1 ? "" : "s");
-}
+  sizing::Axis& search() override { return search_; }
+  std::string name_of(const campaign::TrialPlan& plan) const override {
+    return counted(plan.scenario->uavs.size(), "UAV");
+  }
+  bool add(std::size_t level, const campaign::TrialResult& trial) override {
+    const bool is_copy = report::add_flight(report_.points[level], trial);
+    if (!is_copy) search_.add(level, trial.outcome == campaign::Outcome::kGoalReached);
+    return is_copy;
+  }
+  report::SizeAnswer answer(const campaign::Settings& settings,
+                            const std::vector<std::string>& not_flown) override {
+    report_.answer = search_.answer();
+    report_.settings = settings;
+    report_.not_flown = not_flown;
+    report_.pace = report::pace_at_limit(report_);
+    return report::size_answer(report_);
+  }
+
+ private:
+  report::UavsReport report_;
+  sizing::UavAxis search_;
+};
 
 }  // namespace
 
-int find_uavs(const SizeOptions& options, const std::stop_token& stop) {
+std::unique_ptr<SizeAxis> uavs_axis(const SizeOptions& options) {
   require_for_uavs(options);
   const scenario::Scenario all = load(options, std::nullopt);
   const scenario::Condition condition = scenario::pick_condition(all, options.condition);
   require_shared_board(condition, all.name);
   const scenario::Computer& board = condition.computers[condition.seats.front().computer];
   const auto shipped = scenario::ShippedFiles::of_program(os::own_file());
-  report::UavsReport report{.scenario = all.name,
-                            .named = shipped.name_of(scenario::ShippedKind::kScenario, all.file),
-                            .condition = condition.name,
-                            .board = board.name,
-                            .cores = board.cores,
-                            .question = question_of_uavs(options, all.uavs.size()),
-                            .most_flights = options.max_trials};
-  const std::filesystem::path out =
-      options.out.empty() ? std::filesystem::path("out/size") / (all.name + "-uavs") : options.out;
-  const scenario::Campaign campaign = campaign_of(options, all, condition.name, report.question);
-  for (const scenario::CampaignScenario& entry : campaign.scenarios)
-    report.points.push_back({entry.scenario.uavs.size(), {}});
-  SizeTrials trials(options, campaign, out, stop, name_of);
-  report.settings = trials.settings();
-  const SizeTrials::End end =
-      trials.fly(questions(report, campaign), [](const auto&) { return true; });
-  report.not_flown = trials.not_flown();
-  if (end != SizeTrials::End::kAnswered) return trials.say_why(end);
-  report.pace = report::pace_at_limit(report);
-  write_answer(
-      {report::uavs_answers(report), report::uavs_advice(report), report::uavs_json(report),
-       report::uavs_plot(report), report::uavs_page(report), report::to_junit(report, out)},
-      out, options.junit);
-  return report::is_answered(report) ? 0 : 1;
+  return std::make_unique<UavsAxis>(
+      options, all,
+      report::UavsReport{.scenario = all.name,
+                         .named = shipped.name_of(scenario::ShippedKind::kScenario, all.file),
+                         .condition = condition.name,
+                         .board = board.name,
+                         .cores = board.cores,
+                         .question = question_of_uavs(options, all.uavs.size()),
+                         .most_flights = options.max_trials});
 }
 
 }  // namespace tether::app

@@ -1,5 +1,7 @@
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include <tether/sizing/by_levels.h>
 #include <tether/sizing/by_uavs.h>
 
@@ -11,10 +13,14 @@ constexpr std::size_t kProbes = 2;
 
 }  // namespace
 
+Share UavLevel::share(double confidence) const {
+  return exact_share(reached, flights, confidence);
+}
+
 UavAnswer answer_by_uavs(const UavQuestion& question, std::span<const UavLevel> levels) {
   UavAnswer answer{.carried = question.least - 1, .too_many = question.most + 1};
   for (const UavLevel& level : levels) {
-    const Share share = exact_share(level.reached, level.flights, question.confidence);
+    const Share share = level.share(question.confidence);
     if (share.low >= question.success) answer.carried = std::max(answer.carried, level.uavs);
     if (share.high < question.success) answer.too_many = std::min(answer.too_many, level.uavs);
   }
@@ -41,6 +47,31 @@ UavAnswer answer_by_uavs(const UavQuestion& question, std::span<const UavLevel> 
     return at == levels.end() ? 0 : at->flights;
   });
   return answer;
+}
+
+UavAxis::UavAxis(const UavQuestion& question) : question_(question) {
+  for (std::size_t uavs = question.least; uavs <= question.most; ++uavs) levels_.push_back({uavs});
+}
+
+void UavAxis::add(std::size_t level, bool reached) {
+  ++levels_[level].flights;
+  levels_[level].reached += reached ? 1U : 0U;
+}
+
+std::vector<std::size_t> UavAxis::next_levels(std::size_t most) {
+  answer_ = answer_by_uavs(question_, levels_);
+  std::vector<std::size_t> next;
+  for (std::size_t i = 0; i < most && !answer_.is_decided(); ++i)
+    next.push_back(answer_.next[i % answer_.next.size()] - question_.least);
+  return next;
+}
+
+std::string UavAxis::so_far() const {
+  const bool is_least = answer_.carried >= question_.least;
+  std::string known = is_least ? fmt::format("at least {}", answer_.carried) : "";
+  if (answer_.too_many <= question_.most)
+    known += fmt::format("{}fewer than {}", is_least ? ", " : "", answer_.too_many);
+  return "UAVs that it carries: " + (known.empty() ? "nothing is known yet" : known);
 }
 
 }  // namespace tether::sizing

@@ -3,6 +3,8 @@
 #include <limits>
 #include <span>
 
+#include <fmt/format.h>
+
 #include <tether/base/random.h>
 #include <tether/sizing/sizing.h>
 
@@ -133,6 +135,26 @@ std::vector<double> Sizing::next(std::size_t count) const {
     next[i] = any_of(neighbourhood(question, slowdowns, next[i]), flight);
   }
   return next;
+}
+
+std::vector<std::size_t> Sizing::next_levels(std::size_t most) {
+  latest_ = answer(most == 0);
+  if (latest_.is_narrow || most == 0) return {};
+  std::vector<std::size_t> levels;
+  for (const double slowdown : next(most)) {
+    const auto level = std::ranges::lower_bound(grid_.slowdowns(), slowdown);
+    levels.push_back(static_cast<std::size_t>(level - grid_.slowdowns().begin()));
+  }
+  return levels;
+}
+
+// Bounds from few flights mislead: the final ones can be outside of them.
+std::string Sizing::so_far() const {
+  const Threshold& threshold = latest_.threshold;
+  const bool is_bounded = threshold.low > 0.0 || std::isfinite(threshold.high);
+  return threshold.estimate > 0.0 && is_bounded
+             ? fmt::format("so far about {:.2g} times slower", threshold.estimate)
+             : "no limit is known yet";
 }
 
 }  // namespace tether::sizing

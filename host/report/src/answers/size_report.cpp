@@ -177,11 +177,13 @@ Answer flattery(const SizeReport& report) {
 
 }  // namespace
 
-std::vector<CurvePoint> curve_points(const sizing::SuccessCurve& curve, double least, double most) {
+std::vector<CurvePoint> curve_points(const sizing::SuccessCurve& curve,
+                                     const sizing::Question& question) {
   constexpr int kSteps = 60;
   std::vector<CurvePoint> points;
   for (int i = 0; i <= kSteps; ++i) {
-    const double slowdown = least * std::pow(most / least, static_cast<double>(i) / kSteps);
+    const double part = static_cast<double>(i) / kSteps;
+    const double slowdown = question.least * std::pow(question.most / question.least, part);
     points.push_back({slowdown, curve.share(slowdown)});
   }
   return points;
@@ -254,7 +256,7 @@ std::vector<Answer> size_answers(const SizeReport& report) {
         {"Less sure than asked",
          fmt::format(": the interval is wider than a factor of {}, because {}.",
                      digits(report.question.interval),
-                     copies >= kMostCopies ? "the seeds change too little"
+                     copies >= sizing::kMostCopies ? "the seeds change too little"
                      : report.synchronised.flights.size() + copies + report.not_flown.size() >=
                              report.most_flights
                          ? fmt::format("no more than {} were allowed",
@@ -268,12 +270,6 @@ std::vector<Answer> size_answers(const SizeReport& report) {
   return answers;
 }
 
-std::vector<std::string> size_sentences(const SizeReport& report) {
-  std::vector<std::string> sentences;
-  for (const Answer& answer : size_answers(report)) sentences.push_back(answer.lead + answer.rest);
-  return sentences;
-}
-
 std::vector<std::string> size_advice(const SizeReport& report) {
   const sizing::Answer& answer = report.synchronised.answer;
   std::vector<std::string> advice;
@@ -281,7 +277,7 @@ std::vector<std::string> size_advice(const SizeReport& report) {
     return {
         "Find out what the program waits for, or which threads it has: fly one flight with "
         "`tether run`, which says what to do."};
-  const bool is_exhausted = !answer.is_narrow && report.synchronised.copies >= kMostCopies;
+  const bool is_exhausted = !answer.is_narrow && report.synchronised.copies >= sizing::kMostCopies;
   if (is_exhausted || is_one_start(report.synchronised))
     advice.emplace_back(kVarySeeds);
   else if (!answer.is_narrow)

@@ -11,13 +11,12 @@
 #include <tether/campaign/copies.h>
 #include <tether/os/shell_word.h>
 #include <tether/report/size_report.h>
-#include <tether/report/uavs_report.h>
 
 namespace tether::report {
 namespace {
 
 std::string uavs(std::size_t count) {
-  return fmt::format("{} UAV{}", count, count == 1 ? "" : "s");
+  return counted(count, "UAV");
 }
 
 std::string in_percent(double share) {
@@ -77,24 +76,19 @@ std::string lead_of(const UavsReport& report) {
 
 std::vector<sizing::UavLevel> uav_levels(const std::vector<UavsPoint>& points) {
   std::vector<sizing::UavLevel> levels;
-  for (const UavsPoint& point : points) {
-    if (point.trials.empty()) continue;
-    sizing::UavLevel& level = levels.emplace_back();
-    level.uavs = point.uavs;
-    const auto distinct = campaign::distinct_flights(point.trials);
-    level.flights = distinct.size();
-    level.reached = static_cast<std::size_t>(std::ranges::count(
-        distinct, campaign::Outcome::kGoalReached, &campaign::TrialResult::outcome));
-  }
+  for (const UavsPoint& point : points)
+    if (point.level.flights > 0) levels.push_back(point.level);
   return levels;
 }
 
-std::vector<UavsLevel> levels_of(const UavsReport& report) {
-  std::vector<UavsLevel> levels;
-  for (const sizing::UavLevel& level : uav_levels(report.points))
-    levels.push_back(
-        {level, sizing::exact_share(level.reached, level.flights, report.question.confidence)});
-  return levels;
+bool add_flight(UavsPoint& to, const campaign::TrialResult& trial) {
+  const bool is_copy = std::ranges::any_of(
+      to.trials, [&](const auto& earlier) { return campaign::are_copies(earlier, trial); });
+  to.trials.push_back(trial);
+  if (is_copy) return true;
+  ++to.level.flights;
+  to.level.reached += trial.outcome == campaign::Outcome::kGoalReached ? 1U : 0U;
+  return false;
 }
 
 PaceOrReason pace_at_limit(const UavsReport& report) {
@@ -102,7 +96,7 @@ PaceOrReason pace_at_limit(const UavsReport& report) {
   for (const UavsPoint& point : report.points) {
     if (point.trials.empty()) continue;
     trial = &point.trials.front();
-    if (point.uavs >= report.answer.too_many) break;
+    if (point.level.uavs >= report.answer.too_many) break;
   }
   return trial ? pace_or_reason(*trial) : PaceOrReason{};
 }
@@ -140,7 +134,7 @@ std::vector<Answer> uavs_answers(const UavsReport& report) {
   const std::size_t copies = copies_in(report);
   if (!report.answer.is_decided())
     answers.push_back(
-        {"Less sure than asked", copies >= kMostCopies
+        {"Less sure than asked", copies >= sizing::kMostCopies
                                      ? ": the seeds change too little."
                                      : fmt::format(": no more than {} were allowed.",
                                                    counted(report.most_flights, "flight"))});
@@ -162,7 +156,7 @@ std::vector<std::string> uavs_advice(const UavsReport& report) {
   std::vector<std::string> advice;
   const sizing::UavAnswer& answer = report.answer;
   if (!answer.is_decided())
-    advice.emplace_back(copies_in(report) >= kMostCopies
+    advice.emplace_back(copies_in(report) >= sizing::kMostCopies
                             ? kVarySeeds
                             : "Fly more: `--max-trials`, with `--resume`.");
   if (answer.is_decided() && answer.carried == report.question.most)

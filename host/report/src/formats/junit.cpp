@@ -15,7 +15,6 @@
 #include <tether/os/clock.h>
 #include <tether/report/junit.h>
 #include <tether/report/timing_page.h>
-#include <tether/report/uavs_report.h>
 #include <tether/report/verdict.h>
 
 namespace tether::report {
@@ -197,18 +196,19 @@ std::string to_junit(const campaign::CampaignResults& results,
   return text_of(suites);
 }
 
-std::string to_junit(const SizeReport& report, const std::filesystem::path& folder) {
-  const std::vector<std::string> sentences = size_sentences(report);
-  Suite suite{.name = "size of " + report.scenario};
+std::string to_junit(const SizeAnswer& answer, const std::filesystem::path& folder) {
+  std::vector<std::string> sentences;
+  for (const Answer& one : answer.answers) sentences.push_back(one.lead + one.rest);
+  Suite suite{.name = "size of " + answer.scenario};
   suite.properties = {{"verdict", sentences.front()}};
   double time_s = 0.0;
-  for (const campaign::TrialResult& trial : report.synchronised.trials) {
-    add_start(suite, trial);
-    time_s += to_seconds(trial.this_run.wall);
+  for (const campaign::TrialResult* trial : answer.trials) {
+    add_start(suite, *trial);
+    time_s += to_seconds(trial->this_run.wall);
   }
   const auto add = [&](const std::string& name, const char* type, bool is_passed,
                        const std::string& sentence) {
-    suite.cases.push_back({.trial = report.synchronised.condition,
+    suite.cases.push_back({.trial = answer.condition,
                            .name = name,
                            .time_s = suite.cases.empty() ? time_s : 0.0,
                            .kind = is_passed ? "" : "failure",
@@ -216,32 +216,9 @@ std::string to_junit(const SizeReport& report, const std::filesystem::path& fold
                            .message = is_passed ? "" : sentence,
                            .output = sentence + "\nflights: " + folder.string() + "\n"});
   };
-  add("answer", "answer", is_answered(report), fmt::format("{}", fmt::join(sentences, "\n")));
-  for (const Board& board : report.boards) {
-    const Answer answer = board_answer(board, report);
-    add(board.name, "board", verdict(board, report) == BoardVerdict::kSuffices,
-        answer.lead + answer.rest);
-  }
-  return text_of(std::vector<Suite>{suite});
-}
-
-std::string to_junit(const UavsReport& report, const std::filesystem::path& folder) {
-  Suite suite{.name = "size of " + report.scenario};
-  Case answer{.trial = report.condition, .name = "answer", .type = "answer"};
-  for (const UavsPoint& point : report.points)
-    for (const campaign::TrialResult& trial : point.trials) {
-      add_start(suite, trial);
-      answer.time_s += to_seconds(trial.this_run.wall);
-    }
-  const std::vector<Answer> answers = uavs_answers(report);
-  suite.properties = {{"verdict", answers.front().lead + answers.front().rest}};
-  for (const Answer& one : answers) answer.output += one.lead + one.rest + "\n";
-  if (!is_answered(report)) {
-    answer.kind = "failure";
-    answer.message = answer.output;
-  }
-  answer.output += "flights: " + folder.string() + "\n";
-  suite.cases = {answer};
+  add("answer", "answer", answer.is_answered, fmt::format("{}", fmt::join(sentences, "\n")));
+  for (const auto& [board, suffices, of_board] : answer.boards)
+    add(board, "board", suffices, of_board.lead + of_board.rest);
   return text_of(std::vector<Suite>{suite});
 }
 

@@ -66,13 +66,23 @@ Json json_of(const Board& board, const SizeReport& report) {
   return json;
 }
 
+Json summary_of(const std::vector<Answer>& answers) {
+  Json summary = Json::array();
+  for (const Answer& answer : answers) summary.push_back(answer.lead + answer.rest);
+  return summary;
+}
+
+std::string text_of(const Json& json) {
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
 }  // namespace
 
 std::string size_json(const SizeReport& report) {
   const sizing::Question& question = report.question;
   Json json = {{"schema", kSizeSchemaVersion},
                {"scenario", report.scenario},
-               {"summary", size_sentences(report)},
+               {"summary", summary_of(size_answers(report))},
                {"question",
                 {{"success", question.success},
                  {"confidence", question.confidence},
@@ -85,7 +95,47 @@ std::string size_json(const SizeReport& report) {
   if (report.unsynchronised) json["unsynchronised"] = json_of(*report.unsynchronised);
   json["not_flown"] = report.not_flown;
   json["settings"] = report.settings;
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return text_of(json);
+}
+
+std::string size_json(const UavsReport& report) {
+  const sizing::UavQuestion& question = report.question;
+  Json json = {
+      {"schema", kSizeSchemaVersion},
+      {"axis", "uavs"},
+      {"scenario", report.scenario},
+      {"condition", report.condition},
+      {"board", {{"name", report.board}, {"cores", report.cores}}},
+      {"summary", summary_of(uavs_answers(report))},
+      {"question",
+       {{"success", question.success},
+        {"confidence", question.confidence},
+        {"between", {question.least, question.most}},
+        {"max_trials", report.most_flights}}},
+      {"answer",
+       {{"carried",
+         report.answer.carried < question.least ? Json(nullptr) : Json(report.answer.carried)},
+        {"too_many",
+         report.answer.too_many > question.most ? Json(nullptr) : Json(report.answer.too_many)},
+        {"decided", report.answer.is_decided()}}},
+      {"levels", Json::array()},
+      {"flights", Json::array()},
+      {"not_flown", report.not_flown},
+      {"settings", report.settings}};
+  for (const sizing::UavLevel& level : uav_levels(report.points)) {
+    const sizing::Share share = level.share(question.confidence);
+    json["levels"].push_back({{"uavs", level.uavs},
+                              {"flights", level.flights},
+                              {"reached", level.reached},
+                              {"low", share.low},
+                              {"high", share.high}});
+  }
+  for (const UavsPoint& point : report.points)
+    for (const campaign::TrialResult& trial : point.trials)
+      json["flights"].push_back({{"uavs", point.level.uavs},
+                                 {"seed", trial.seed},
+                                 {"reached", trial.outcome == campaign::Outcome::kGoalReached}});
+  return text_of(json);
 }
 
 }  // namespace tether::report

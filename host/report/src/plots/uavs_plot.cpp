@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include <tether/report/uavs_report.h>
+#include <tether/report/size_report.h>
 
 namespace tether::report {
 
@@ -13,8 +13,10 @@ Plot uavs_plot(const UavsReport& report) {
   const auto least = static_cast<double>(report.question.least),
              most = static_cast<double>(report.question.most);
   DataBlock shares("shares"), wanted("wanted");
-  for (const auto& [level, share] : levels_of(report))
+  for (const sizing::UavLevel& level : uav_levels(report.points)) {
+    const sizing::Share share = level.share(report.question.confidence);
     shares.add(static_cast<double>(level.uavs), share.estimate, share.low, share.high);
+  }
   wanted.add(least - 0.5, report.question.success);
   wanted.add(most + 0.5, report.question.success);
   Drawing drawing;

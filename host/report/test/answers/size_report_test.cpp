@@ -12,6 +12,12 @@ using testing::Contains;
 using testing::HasSubstr;
 using testing::SizeIs;
 
+std::vector<std::string> size_sentences(const SizeReport& report) {
+  std::vector<std::string> sentences;
+  for (const Answer& answer : size_answers(report)) sentences.push_back(answer.lead + answer.rest);
+  return sentences;
+}
+
 TEST(SizeReport, AnswersFirstThenJudgesTheBoards) {
   const std::vector<std::string> sentences = size_sentences(sample_size());
   ASSERT_THAT(sentences, SizeIs(3));

@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <tether/report/junit.h>
 #include <tether/report/size_report.h>
-#include <tether/report/uavs_report.h>
 
 namespace tether::report {
 namespace {
@@ -12,7 +12,7 @@ using testing::HasSubstr;
 using testing::StartsWith;
 
 /// Of up to four UAVs: the flights with each number of them, and how many reach the goal.
-UavsReport report_of(const std::vector<sizing::UavLevel>& levels) {
+UavsReport report_of(const std::vector<sizing::UavLevel>& levels, const std::string& digest = "") {
   UavsReport report{.scenario = "four",
                     .named = "/tests/four.toml",
                     .condition = "one for all",
@@ -20,12 +20,14 @@ UavsReport report_of(const std::vector<sizing::UavLevel>& levels) {
                     .question = {.most = 4},
                     .most_flights = 300};
   for (const sizing::UavLevel& level : levels) {
-    UavsPoint& point = report.points.emplace_back(UavsPoint{level.uavs, {}});
-    point.trials.resize(level.flights);
+    UavsPoint& point = report.points.emplace_back(UavsPoint{{level.uavs}, {}});
     for (std::size_t i = 0; i < level.flights; ++i) {
-      point.trials[i].seed = i + 1;
-      point.trials[i].outcome =
+      campaign::TrialResult trial;
+      trial.seed = i + 1;
+      trial.flight_digest = digest;
+      trial.outcome =
           i < level.reached ? campaign::Outcome::kGoalReached : campaign::Outcome::kGoalMissed;
+      add_flight(point, trial);
     }
   }
   report.answer = sizing::answer_by_uavs(report.question, uav_levels(report.points));
@@ -54,9 +56,8 @@ TEST(UavsReport, AnswersFirst) {
 }
 
 TEST(UavsReport, AdvisesToVaryWhatTheSeedsDoNotChange) {
-  UavsReport report = report_of({{1, kMostCopies + 1, kMostCopies + 1}});
-  for (campaign::TrialResult& trial : report.points[0].trials) trial.flight_digest = "01";
-  report.answer = sizing::answer_by_uavs(report.question, uav_levels(report.points));
+  const std::size_t flights = sizing::kMostCopies + 1;
+  const UavsReport report = report_of({{1, flights, flights}}, "01");
   EXPECT_THAT(uavs_advice(report), testing::Contains(HasSubstr("the seeds change nothing")));
   EXPECT_FALSE(is_answered(report));
 }
@@ -113,20 +114,21 @@ TEST(UavsReport, DoesNotBlameTheBoardIfHardlyAProgramWaitsForCores) {
 
 TEST(UavsReport, HasTheSameAnswerAsJsonPageAndJunit) {
   const UavsReport report = report_of({{2, 36, 36}, {3, 2, 0}});
-  const auto json = nlohmann::json::parse(uavs_json(report));
+  const auto json = nlohmann::json::parse(size_json(report));
   EXPECT_EQ(json["axis"], "uavs");
   EXPECT_EQ(json["answer"]["carried"], 2);
   EXPECT_EQ(json["answer"]["too_many"], 3);
   EXPECT_EQ(json["levels"][1]["reached"], 0);
   EXPECT_EQ(json["flights"].size(), 38u);
-  const std::string page = uavs_page(report);
+  const std::string page = size_page(size_answer(report));
   const auto answer = page.find("<strong>This board carries 2 UAVs</strong>");
   ASSERT_NE(answer, std::string::npos);
   EXPECT_LT(answer, page.find("<svg"));
   EXPECT_THAT(page, HasSubstr("90 to 100 %"));
-  EXPECT_THAT(to_junit(report, "out"), HasSubstr("failures=\"0\""));
-  EXPECT_THAT(to_junit(report_of({{2, 3, 3}}), "out"), HasSubstr("failures=\"1\""));
-  EXPECT_EQ(nlohmann::json::parse(uavs_json(report_of({{4, 36, 36}})))["answer"]["too_many"],
+  EXPECT_THAT(to_junit(size_answer(report), "out"), HasSubstr("failures=\"0\""));
+  const UavsReport open = report_of({{2, 3, 3}});
+  EXPECT_THAT(to_junit(size_answer(open), "out"), HasSubstr("failures=\"1\""));
+  EXPECT_EQ(nlohmann::json::parse(size_json(report_of({{4, 36, 36}})))["answer"]["too_many"],
             nullptr);
 }
 

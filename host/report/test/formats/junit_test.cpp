@@ -9,8 +9,8 @@
 #include <tether/os/text_file.h>
 #include <tether/report/junit.h>
 #include <tether/report/page.h>
+#include <tether/report/size_report.h>
 #include <tether/report/timing_page.h>
-#include <tether/report/uavs_report.h>
 
 namespace tether::report {
 namespace {
@@ -99,13 +99,13 @@ std::string verdict_in(const XMLElement& all) {
 TEST_F(Junit, OfASizeHasTheVerdictAndACaseForTheAnswerAndEachBoard) {
   SizeReport report = sample_size();
   report.boards.push_back({"old.toml", 9.0, {}, {}});
-  const XMLElement& all = suites(to_junit(report, out_));
+  const XMLElement& all = suites(to_junit(size_answer(report), out_));
   EXPECT_THAT(verdict_in(all), StartsWith("Sufficient up to 3.1 × slower"));
   EXPECT_THAT(cases_of(*all.FirstChildElement()),
               ElementsAre("answer", "pi.toml", "old.toml: failure"));
   report.synchronised.trials[1].this_run.doubts = {
       {campaign::Doubt::Kind::kUnseenWait, "uav1", 0.4}};
-  const XMLElement& unseen = suites(to_junit(report, out_));
+  const XMLElement& unseen = suites(to_junit(size_answer(report), out_));
   EXPECT_THAT(verdict_in(unseen), StartsWith("No answer: the program of uav1 waited up to about"));
   EXPECT_THAT(cases_of(*unseen.FirstChildElement()),
               ElementsAre("answer: failure", "pi.toml: failure", "old.toml: failure"));
@@ -114,7 +114,7 @@ TEST_F(Junit, OfASizeHasTheVerdictAndACaseForTheAnswerAndEachBoard) {
 TEST_F(Junit, OfNumbersOfUavsHasTheVerdict) {
   UavsReport report{.condition = "all", .board = "obc", .question = {.most = 2}};
   report.answer.too_many = 3;
-  EXPECT_THAT(verdict_in(suites(to_junit(report, out_))),
+  EXPECT_THAT(verdict_in(suites(to_junit(size_answer(report), out_))),
               StartsWith("It is not known whether this board carries 1 UAV"));
 }
 

@@ -17,9 +17,9 @@ namespace tether::report {
 std::string to_junit(const campaign::CampaignResults& results, const std::filesystem::path& folder);
 
 /// The answer of `tether size`: one suite with a case for the answer, which fails if it is not as
-/// narrow as asked, and one for each board, which fails unless the board suffices. @param folder of
+/// sure as asked, and one for each board, which fails unless the board suffices. @param folder of
 /// its flights.
-std::string to_junit(const SizeReport& report, const std::filesystem::path& folder);
+std::string to_junit(const SizeAnswer& answer, const std::filesystem::path& folder);
 
 /// A file with one error, for what ended before there was a result. `name`: of the suite.
 std::string junit_of_error(const std::string& name, const std::string& message);

@@ -10,11 +10,13 @@
 #include <tether/campaign/campaign_folder.h>
 #include <tether/campaign/result.h>
 #include <tether/report/plots.h>
+#include <tether/report/table.h>
 #include <tether/report/verdict.h>
+#include <tether/sizing/by_uavs.h>
 #include <tether/sizing/sizing.h>
 
-/// What `tether size` found: the answer in sentences, as a drawing, a page and JSON. Pure
-/// functions, but for the drawing program of the page.
+/// What `tether size` found, on its two axes: the answer in sentences, as a drawing, a page and
+/// JSON. Pure functions, but for the drawing program of the page.
 namespace tether::report {
 
 /// A point of a curve of success over slowdown.
@@ -22,8 +24,9 @@ struct CurvePoint {
   double slowdown = 1.0;
   sizing::Share share{};
 };
-/// The curve from `least` to `most`, for drawings.
-std::vector<CurvePoint> curve_points(const sizing::SuccessCurve& curve, double least, double most);
+/// The curve over the slowdowns of the question, for drawings.
+std::vector<CurvePoint> curve_points(const sizing::SuccessCurve& curve,
+                                     const sizing::Question& question);
 
 /// The flights of one condition, at several slowdowns, and what follows from them.
 struct SizedCondition {
@@ -35,8 +38,6 @@ struct SizedCondition {
   /// Flights that repeated one at the same slowdown (campaign/copies.h). They are not among these.
   std::size_t copies = 0;
 };
-/// With so many copies, the seeds change too little for an answer that is surer.
-inline constexpr std::size_t kMostCopies = 20;
 /// Whether the seeds change nothing: flights differ only where their slowdowns do, so that all of
 /// them are one flight at several speeds.
 bool is_one_start(const SizedCondition& sized);
@@ -54,7 +55,6 @@ enum class BoardVerdict { kSuffices, kUndecided, kDoesNot };
 
 struct SizeReport {
   std::string scenario;
-  std::string description;
   sizing::Question question{};
   std::size_t most_flights = 0;
   SizedCondition synchronised{};
@@ -80,8 +80,6 @@ Answer board_answer(const Board& board, const SizeReport& report);
 /// The answer and its evidence: one sentence, after one about slower computers that reach the goal
 /// where faster ones fail, if there are any; then one for each board, then what limits the answer.
 std::vector<Answer> size_answers(const SizeReport& report);
-/// The same without emphasis.
-std::vector<std::string> size_sentences(const SizeReport& report);
 
 /// What to do next; each one sentence.
 std::vector<std::string> size_advice(const SizeReport& report);
@@ -91,14 +89,6 @@ PaceOrReason pace_near_answer(const SizeReport& report);
 /// Success over slowdown with the flights and the boards, and below it the margin of each limited
 /// metric.
 Plot size_plot(const SizeReport& report);
-
-/// One self-contained page: answer, drawing, tables.
-/// @throws Error(kSetup) if gnuplot is missing or fails.
-std::string size_page(const SizeReport& report);
-
-inline constexpr int kSizeSchemaVersion = 1;
-/// The content of `size.json` (docs/guide/size.md).
-std::string size_json(const SizeReport& report);
 
 /// A metric's distance from its limit in shares of the limit, negative beyond it. None without a
 /// value or a limit, and for counts, which do not vary continuously.
@@ -112,5 +102,83 @@ bool speed_matters(const SizedCondition& sized);
 /// The flight for the statistics. Its margin is that of its worst metric, if that agrees with the
 /// outcome. @pre the trial did not fail.
 sizing::Flight flight_of(const campaign::TrialResult& trial, double slowdown);
+
+/// The flights with the first so many UAVs of the scenario; none of them failed.
+struct UavsPoint {
+  sizing::UavLevel level{};  ///< without copies
+  std::vector<campaign::TrialResult> trials{};
+};
+
+struct UavsReport {
+  std::string scenario{};
+  std::string named{};  ///< the scenario for a command line (scenario::ShippedFiles::name_of)
+  std::string condition{};
+  std::string board{};  ///< name of the target that the UAVs share
+  int cores = 1;        ///< of the board
+  sizing::UavQuestion question{};
+  std::size_t most_flights = 0;
+  sizing::UavAnswer answer{};
+  std::vector<UavsPoint> points{};  ///< in ascending order
+  /// Of a flight with the fewest UAVs that are too many or, if there are none, with the most that
+  /// were flown.
+  PaceOrReason pace{};
+  std::vector<std::string> not_flown{};  ///< one line for each flight that failed, with its reason
+  campaign::Settings settings{};
+};
+
+/// @return whether the flight is a copy of an earlier one, which does not count. @pre the trial did
+///   not fail.
+bool add_flight(UavsPoint& to, const campaign::TrialResult& trial);
+
+/// Those that were flown, in ascending order.
+std::vector<sizing::UavLevel> uav_levels(const std::vector<UavsPoint>& points);
+PaceOrReason pace_at_limit(const UavsReport& report);
+std::size_t flights_of(const UavsReport& report);
+/// Of these, copies of other ones with as many UAVs, which do not count.
+std::size_t copies_in(const UavsReport& report);
+
+/// Whether the number of UAVs is known, and at least the least one that was asked for.
+bool is_answered(const UavsReport& report);
+/// The answer with its evidence, then what limits it.
+std::vector<Answer> uavs_answers(const UavsReport& report);
+/// What to do next; each one sentence.
+std::vector<std::string> uavs_advice(const UavsReport& report);
+/// The share of flights that reach the goal over the number of UAVs, with exact intervals.
+Plot uavs_plot(const UavsReport& report);
+
+inline constexpr int kSizeSchemaVersion = 1;
+/// The content of `size.json` (docs/guide/size.md).
+std::string size_json(const SizeReport& report);
+std::string size_json(const UavsReport& report);
+
+/// An answer of `tether size`, whatever it varied: what the terminal shows, the page and JUnit.
+struct SizeAnswer {
+  struct OfBoard {
+    std::string board;
+    bool suffices = false;
+    Answer answer{};
+  };
+
+  std::string scenario{}, condition{};
+  std::string question{};  ///< "how slow a computer is fast enough?"
+  std::vector<Answer> answers{};
+  std::vector<std::string> advice{};
+  bool is_answered = false;
+  std::vector<OfBoard> boards{};
+  Plot plot{};
+  std::string caption{};
+  std::vector<Table> tables{};    ///< below the drawing
+  std::optional<Table> levels{};  ///< folded
+  Table basis{};
+  std::vector<std::string> not_flown{};
+  std::vector<const campaign::TrialResult*> trials{};
+  std::string json{};
+};
+/// @pre the report outlives the answer.
+SizeAnswer size_answer(const SizeReport& report);
+SizeAnswer size_answer(const UavsReport& report);
+/// One self-contained page: answer, drawing, tables.
+/// @throws Error(kSetup) if gnuplot is missing or fails.
+std::string size_page(const SizeAnswer& answer);
 
 }  // namespace tether::report

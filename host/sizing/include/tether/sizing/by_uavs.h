@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <tether/sizing/question.h>
+#include <tether/sizing/search.h>
 
 /// How many UAVs a board carries: whole levels, each of which is sufficient or not. A board that
 /// carries some number of UAVs is taken to carry fewer as well.
@@ -23,6 +24,8 @@ struct UavLevel {
   std::size_t uavs = 1;
   std::size_t flights = 0;
   std::size_t reached = 0;
+
+  Share share(double confidence) const;  ///< with the exact interval. @pre flights ≥ 1
 };
 
 /// A level is sufficient if all of its exact interval is at or above the wanted share, and
@@ -40,5 +43,22 @@ struct UavAnswer {
 };
 /// @param levels those that were flown, in any order; each once.
 UavAnswer answer_by_uavs(const UavQuestion& question, std::span<const UavLevel> levels);
+
+/// Level i has `question.least` + i UAVs.
+class UavAxis final : public Axis {
+ public:
+  explicit UavAxis(const UavQuestion& question);
+
+  void add(std::size_t level, bool reached);
+  /// As of the last call of `next_levels`.
+  const UavAnswer& answer() const { return answer_; }
+  std::vector<std::size_t> next_levels(std::size_t most) override;
+  std::string so_far() const override;
+
+ private:
+  UavQuestion question_;
+  std::vector<UavLevel> levels_{};
+  UavAnswer answer_{};
+};
 
 }  // namespace tether::sizing

@@ -29,18 +29,15 @@ struct Flight {
   friend bool operator==(const Flight&, const Flight&) = default;
 };
 
-/// The largest slowdown at which the share of successful flights is still the wanted one.
-struct Threshold {
-  double estimate = 0.0;
-  double low = 0.0;  ///< bounds of the interval
-  double high = 0.0;
-};
-
-/// A share with the bounds of its interval.
-struct Share {
+/// An estimate with the bounds of its interval.
+struct Estimate {
   double estimate = 0.0;
   double low = 0.0;
   double high = 0.0;
 };
+/// The largest slowdown at which the share of successful flights is still the wanted one.
+using Threshold = Estimate;
+/// Of flights that succeed.
+using Share = Estimate;
 
 }  // namespace tether::sizing

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <tether/sizing/by_levels.h>
+#include <tether/sizing/search.h>
 #include <tether/sizing/success_curve.h>
 
 namespace tether::sizing {
@@ -33,8 +34,9 @@ double neighbourhood_reach(const Question& question);
 
 /// Finds the threshold flight by flight: which slowdowns to fly, when to stop, and the answer.
 /// Prefers the curve with margins, then the one without, then levels: each is left for the next
-/// when the flights do not fit it (SuccessCurve::fit). Not thread-safe.
-class Sizing {
+/// when the flights do not fit it (SuccessCurve::fit). Its levels are the grid's slowdowns. Not
+/// thread-safe.
+class Sizing final : public Axis {
  public:
   /// @param has_margins whether flights have margins. @pre `grid` outlives the object.
   Sizing(const CurveGrid& grid, bool has_margins);
@@ -52,6 +54,10 @@ class Sizing {
   /// The spread depends on the number of flights before, and on nothing else. @pre answer() was not
   /// narrow enough.
   std::vector<double> next(std::size_t count) const;
+  std::vector<std::size_t> next_levels(std::size_t most) override;
+  std::string so_far() const override;
+  /// As of the last call of `next_levels`.
+  const Answer& latest() const { return latest_; }
   /// The curve of the answer; of kLevels, that of reached and missed goals.
   const SuccessCurve& curve() const;
 
@@ -64,6 +70,7 @@ class Sizing {
   std::size_t copies_ = 0;
   Basis basis_;
   double fit_ = 1.0;
+  Answer latest_{};
 };
 
 }  // namespace tether::sizing
