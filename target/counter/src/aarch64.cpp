@@ -1,4 +1,4 @@
-#include <tether/counter/classify.h>
+#include "classify.h"
 
 /// Instructions of 64-bit ARM, by the encoding index of the Arm Architecture Reference Manual
 /// (DDI 0487, C4). A table is searched from its first row.

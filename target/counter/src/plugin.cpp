@@ -1,3 +1,4 @@
+#include "classify.h"
 #include "turns.h"
 
 #include <atomic>
@@ -12,7 +13,6 @@
 #include <unistd.h>
 
 #include <tether/base/count_page.h>
-#include <tether/counter/classify.h>
 
 /// A plugin of qemu-user: counts the work of the emulated program in the page that the program's
 /// client library reads. Counting is an addition for each translated block that begins.

@@ -1,7 +1,7 @@
+#include "classify.h"
+
 #include <algorithm>
 #include <optional>
-
-#include <tether/counter/classify.h>
 
 /// Instructions of x86-64, by the opcode maps of the Intel manual (volume 2, appendix A). Tables
 /// name ranges of opcodes and are searched from their first row.

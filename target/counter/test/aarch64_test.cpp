@@ -1,9 +1,10 @@
+
+#include "classify.h"
+
 #include <string>
 #include <vector>
 
 #include <gmock/gmock.h>
-
-#include <tether/counter/classify.h>
 
 namespace tether::counter {
 namespace {

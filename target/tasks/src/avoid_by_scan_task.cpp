@@ -2,7 +2,7 @@
 #include "velocity_planner.h"
 
 #include <tether/base/units.h>
-#include <tether/tasks/avoid_by_scan_task.h>
+#include <tether/tasks/mission_tasks.h>
 #include <tether/tasks/task_context.h>
 
 namespace tether::tasks {

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <utility>
 
-#include <tether/tasks/closed_path_task.h>
+#include <tether/tasks/paper_tasks.h>
 #include <tether/tasks/task_context.h>
 
 // Algorithm 5 as a state machine: a rest before the start, in which the IMU's bias is measured and

@@ -3,7 +3,7 @@
 #include <optional>
 
 #include <tether/base/time.h>
-#include <tether/tasks/relative_position_task.h>
+#include <tether/tasks/paper_tasks.h>
 #include <tether/vision/anchor_tracker.h>
 
 namespace tether::tasks {

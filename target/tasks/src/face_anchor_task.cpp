@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include <tether/tasks/face_anchor_task.h>
+#include <tether/tasks/paper_tasks.h>
 #include <tether/tasks/task_context.h>
 
 namespace tether::tasks {

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include <tether/tasks/go_to_task.h>
+#include <tether/tasks/mission_tasks.h>
 #include <tether/tasks/task_context.h>
 
 namespace tether::tasks {

@@ -1,6 +1,6 @@
 #include "motion.h"
 
-#include <tether/tasks/hold_task.h>
+#include <tether/tasks/mission_tasks.h>
 #include <tether/tasks/task_context.h>
 
 namespace tether::tasks {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include <tether/tasks/land_on_task.h>
+#include <tether/tasks/mission_tasks.h>
 #include <tether/tasks/task_context.h>
 
 namespace tether::tasks {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <tether/tasks/land_task.h>
+#include <tether/tasks/mission_tasks.h>
 #include <tether/tasks/task_context.h>
 
 namespace tether::tasks {

@@ -1,4 +1,4 @@
-#include <tether/tasks/loop_limit.h>
+#include <tether/tasks/task.h>
 
 namespace tether::tasks {
 

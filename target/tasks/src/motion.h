@@ -9,8 +9,7 @@
 #include <tether/base/result.h>
 #include <tether/base/time.h>
 #include <tether/client/vehicle.h>
-#include <tether/tasks/face_anchor_task.h>
-#include <tether/tasks/loop_limit.h>
+#include <tether/tasks/paper_tasks.h>
 #include <tether/tasks/task.h>
 #include <tether/tasks/task_context.h>
 #include <tether/vision/relative_position.h>

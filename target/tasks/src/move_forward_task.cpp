@@ -5,7 +5,7 @@
 #include <numbers>
 #include <utility>
 
-#include <tether/tasks/move_forward_task.h>
+#include <tether/tasks/paper_tasks.h>
 #include <tether/tasks/task_context.h>
 
 namespace tether::tasks {

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include <tether/tasks/relative_position_task.h>
+#include <tether/tasks/paper_tasks.h>
 #include <tether/tasks/task_context.h>
 
 namespace tether::tasks {

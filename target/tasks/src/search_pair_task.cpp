@@ -6,7 +6,7 @@
 #include <string_view>
 #include <utility>
 
-#include <tether/tasks/search_pair_task.h>
+#include <tether/tasks/mission_tasks.h>
 #include <tether/tasks/task_context.h>
 
 namespace tether::tasks {

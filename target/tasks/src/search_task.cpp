@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include <tether/tasks/search_task.h>
+#include <tether/tasks/mission_tasks.h>
 #include <tether/tasks/task_context.h>
 
 namespace tether::tasks {

@@ -2,7 +2,7 @@
 #include <utility>
 
 #include <tether/stats/sample_statistics.h>
-#include <tether/tasks/sensor_characterization_task.h>
+#include <tether/tasks/paper_tasks.h>
 #include <tether/tasks/task_context.h>
 
 namespace tether::tasks {

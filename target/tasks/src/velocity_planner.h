@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include <tether/tasks/avoid_by_scan_task.h>
+#include <tether/tasks/mission_tasks.h>
 #include <tether/uav/math.h>
 #include <tether/uav/samples.h>
 

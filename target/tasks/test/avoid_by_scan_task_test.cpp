@@ -8,7 +8,7 @@
 
 #include <gmock/gmock.h>
 
-#include <tether/tasks/avoid_by_scan_task.h>
+#include <tether/tasks/mission_tasks.h>
 
 namespace tether::tasks {
 namespace {

@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
-#include <tether/tasks/closed_path_task.h>
+#include <tether/tasks/paper_tasks.h>
 #include <tether/tasks/task_context.h>
 #include <tether/tasks/testing/planar_vehicle.h>
 

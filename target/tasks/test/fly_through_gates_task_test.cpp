@@ -4,7 +4,7 @@
 
 #include <gmock/gmock.h>
 
-#include <tether/tasks/fly_through_gates_task.h>
+#include <tether/tasks/mission_tasks.h>
 #include <tether/tasks/task_context.h>
 #include <tether/vision/testing/synthetic_scene.h>
 

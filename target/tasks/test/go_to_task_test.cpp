@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include <tether/tasks/go_to_task.h>
+#include <tether/tasks/mission_tasks.h>
 
 namespace tether::tasks {
 namespace {

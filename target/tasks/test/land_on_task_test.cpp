@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <tether/client/vehicle.h>
-#include <tether/tasks/land_on_task.h>
+#include <tether/tasks/mission_tasks.h>
 #include <tether/tasks/task_context.h>
 #include <tether/vision/testing/synthetic_scene.h>
 

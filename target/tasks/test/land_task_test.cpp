@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <tether/tasks/land_task.h>
+#include <tether/tasks/mission_tasks.h>
 
 namespace tether::tasks {
 namespace {

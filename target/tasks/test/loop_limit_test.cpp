@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <tether/tasks/loop_limit.h>
+#include <tether/tasks/task.h>
 
 namespace tether::tasks {
 namespace {

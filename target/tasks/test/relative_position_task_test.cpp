@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
 
-#include <tether/tasks/relative_position_task.h>
+#include <tether/tasks/paper_tasks.h>
 #include <tether/tasks/task_context.h>
 #include <tether/tasks/testing/planar_vehicle.h>
 

@@ -5,7 +5,7 @@
 
 #include <gmock/gmock.h>
 
-#include <tether/tasks/search_pair_task.h>
+#include <tether/tasks/mission_tasks.h>
 
 namespace tether::tasks {
 namespace {

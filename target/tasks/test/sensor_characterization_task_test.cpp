@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include <tether/tasks/sensor_characterization_task.h>
+#include <tether/tasks/paper_tasks.h>
 #include <tether/tasks/task_context.h>
 #include <tether/tasks/testing/planar_vehicle.h>
 

@@ -1,8 +1,7 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
-#include <tether/tasks/face_anchor_task.h>
-#include <tether/tasks/relative_position_task.h>
+#include <tether/tasks/paper_tasks.h>
 #include <tether/tasks/task_sequence.h>
 #include <tether/tasks/testing/planar_vehicle.h>
 

@@ -3,6 +3,7 @@
 #include "pages/page_figures.h"
 #include "pages/verdict_html.h"
 #include "plots/svg.h"
+#include "tables/paper_figures.h"
 
 #include <algorithm>
 #include <iterator>
@@ -10,7 +11,6 @@
 #include <fmt/format.h>
 
 #include <tether/report/page.h>
-#include <tether/report/paper_figures.h>
 #include <tether/report/report.h>
 #include <tether/report/sweep.h>
 #include <tether/report/verdict.h>

@@ -1,7 +1,8 @@
+
+#include "tables/paper_figures.h"
+
 #include <algorithm>
 #include <array>
-
-#include <tether/report/paper_figures.h>
 
 namespace tether::report {
 namespace {

@@ -1,3 +1,4 @@
+#include "tables/paper_figures.h"
 #include "tables/report_format.h"
 
 #include <algorithm>
@@ -5,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include <tether/report/paper_figures.h>
 #include <tether/report/report.h>
 #include <tether/report/sweep.h>
 

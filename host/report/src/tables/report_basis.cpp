@@ -1,3 +1,4 @@
+#include "tables/paper_figures.h"
 #include "tables/report_format.h"
 
 #include <algorithm>
@@ -8,7 +9,6 @@
 
 #include <fmt/format.h>
 
-#include <tether/report/paper_figures.h>
 #include <tether/report/report.h>
 
 // The table of a campaign's setup and checks, collected over all trials by `Basis`; the table of

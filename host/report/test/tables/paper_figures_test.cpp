@@ -1,9 +1,10 @@
+
+#include "tables/paper_figures.h"
+
 #include <set>
 #include <string>
 
 #include <gtest/gtest.h>
-
-#include <tether/report/paper_figures.h>
 
 namespace tether::report {
 namespace {

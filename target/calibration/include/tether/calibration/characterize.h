@@ -7,7 +7,7 @@
 #include <tether/base/result.h>
 #include <tether/base/time.h>
 #include <tether/client/vehicle.h>
-#include <tether/tasks/sensor_characterization_task.h>
+#include <tether/tasks/paper_tasks.h>
 #include <tether/tasks/task.h>
 #include <tether/uav/catalogue.h>
 

@@ -8,20 +8,8 @@
 
 #include <tether/base/time.h>
 #include <tether/client/vehicle.h>
-#include <tether/tasks/avoid_by_scan_task.h>
-#include <tether/tasks/closed_path_task.h>
-#include <tether/tasks/face_anchor_task.h>
-#include <tether/tasks/fly_through_gates_task.h>
-#include <tether/tasks/go_to_task.h>
-#include <tether/tasks/hold_task.h>
-#include <tether/tasks/inspect_task.h>
-#include <tether/tasks/land_on_task.h>
-#include <tether/tasks/land_task.h>
-#include <tether/tasks/move_forward_task.h>
-#include <tether/tasks/relative_position_task.h>
-#include <tether/tasks/search_pair_task.h>
-#include <tether/tasks/search_task.h>
-#include <tether/tasks/sensor_characterization_task.h>
+#include <tether/tasks/mission_tasks.h>
+#include <tether/tasks/paper_tasks.h>
 #include <tether/tasks/task.h>
 #include <tether/tasks/task_context.h>
 

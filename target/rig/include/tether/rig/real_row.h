@@ -6,7 +6,7 @@
 
 #include <tether/client/vehicle.h>
 #include <tether/rig/mission.h>
-#include <tether/tasks/relative_position_task.h>
+#include <tether/tasks/paper_tasks.h>
 #include <tether/tasks/task.h>
 
 /// The row "Real sensor" of the paper's Table II: "compute relative position" on real input.

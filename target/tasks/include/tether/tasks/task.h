@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <string>
@@ -7,7 +8,9 @@
 #include <vector>
 
 #include <tether/base/result.h>
+#include <tether/base/time.h>
 
+/// What every task is, and how long its loop may take.
 namespace tether::tasks {
 
 class TaskContext;
@@ -59,5 +62,31 @@ class Task {
 
 /// Runs a task, and annotates each phase in the record.
 TaskOutcome run(Task& task, TaskContext& context);
+
+/// Ends a task loop that does not end by itself: after a time on the SUT's clock, or after a number
+/// of rounds in case that clock is stopped. Not thread-safe.
+class LoopLimit {
+ public:
+  /// @pre time_limit > 0, max_rounds > 0
+  LoopLimit(Duration time_limit, int max_rounds)
+      : time_limit_(time_limit), max_rounds_(max_rounds) {}
+
+  /// Call once, when the task begins.
+  void start(ExecTime now);
+  /// Call at the beginning of each round. Returns "time limit" or "round limit" at the end.
+  Progress next_round(ExecTime now);
+  /// Time since `start`.
+  Duration elapsed(ExecTime now) const { return now - started_at_; }
+  /// What is left of the time limit; never negative.
+  Duration left(ExecTime now) const {
+    return std::max(time_limit_ - elapsed(now), Duration::zero());
+  }
+
+ private:
+  Duration time_limit_;
+  int max_rounds_;
+  ExecTime started_at_;
+  int rounds_ = 0;
+};
 
 }  // namespace tether::tasks
