@@ -123,7 +123,8 @@ TEST_F(Campaign, OutlivesATrialKilledBeforeItsResultIsKept) {
   EXPECT_THAT(again["first_failure"].get<std::string>(), HasSubstr("signal 9"));
 }
 
-// All of it is stopped for longer than hang_limit_s allows a SUT.
+// All of it is stopped for longer than hang_limit_s allows a SUT. The other one flies two at a
+// time.
 TEST_F(Campaign, ThatWasStoppedIsTheSameAsAnother) {
   Process process(campaign());
   ASSERT_TRUE(sut_prints(trial(1), "pausing")) << process.err();
@@ -133,7 +134,7 @@ TEST_F(Campaign, ThatWasStoppedIsTheSameAsAnother) {
   }
   EXPECT_EQ(process.wait(90s).code, 0) << process.err();
   expect_all_finished();
-  EXPECT_EQ(run(campaign({}, "alone")).code, 0);
+  EXPECT_EQ(run(campaign({"--jobs", "2"}, "alone")).code, 0);
   for (std::size_t i = 0; i < kTrials.size(); ++i) expect_same_runs(trial(i), trial(i, "alone"));
 }
 

@@ -16,7 +16,7 @@
 
 /// Every shipped program flies under every shipped condition and target that claims to support it.
 /// What is shipped is found when the test starts, so a new file joins by itself. Each flight is so
-/// short that few goals are reached; system_tasks flies them to their ends. At each change, all
+/// short that few goals are reached; system_flights flies them to their ends. At each change, all
 /// conditions and every sixth pair of a scenario and a target ("Data"); the other pairs before a
 /// release ("Pairs").
 namespace tether::system_test {
