@@ -110,7 +110,7 @@ class SlowdownAxis final : public SizeAxis {
         entry.scenario.conditions.push_back(condition);
         scenario::slow_down(entry.scenario.conditions.back(), slowdown);
         entry.conditions.push_back(entry.scenario.conditions.back().name);
-        levels.push_back({scenario.name, entry.conditions.back()});
+        levels.emplace_back(scenario.name, entry.conditions.back());
       }
     }
     campaign.scenarios.push_back(std::move(entry));

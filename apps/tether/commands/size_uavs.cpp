@@ -82,7 +82,7 @@ class UavsAxis final : public SizeAxis {
                                     .paper_table = "",
                                     .profile = {},
                                     .swept_from = all.name});
-      levels.push_back({campaign.scenarios.back().scenario.name, report_.condition});
+      levels.emplace_back(campaign.scenarios.back().scenario.name, report_.condition);
       report_.points.push_back({{uavs}, {}});
     }
     searched = levels.size();
