@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-// The tables of the guide are those of the sources.
+// The tables and lists of the guide are those of the sources.
 namespace tether::autopilot {
 namespace {
 
@@ -28,13 +28,12 @@ std::string parameters_table() {
   return table;
 }
 
-std::string streams_table() {
-  std::string table = "| message | at first [Hz] |\n|---|---:|\n";
+std::string streams_list() {
+  std::string list;
   for (const StreamRate& stream : stream_rates())
-    table +=
-        fmt::format("| {} | {} |\n", stream.name,
-                    stream.rate_hz == 0.0 ? "on request" : fmt::format("{:g}", stream.rate_hz));
-  return table;
+    list += fmt::format("{}{} {}", list.empty() ? "" : ", ", stream.name,
+                        stream.rate_hz == 0.0 ? "on request" : fmt::format("{:g}", stream.rate_hz));
+  return list + ".";
 }
 
 TEST(Guide, HasTheParameters) {
@@ -44,9 +43,9 @@ TEST(Guide, HasTheParameters) {
 }
 
 TEST(Guide, HasTheMessages) {
-  EXPECT_NE(guide().find(streams_table()), std::string::npos)
-      << "docs/guide/flight-controllers.md needs this table:\n"
-      << streams_table();
+  EXPECT_NE(guide().find(streams_list()), std::string::npos)
+      << "docs/guide/flight-controllers.md needs this list:\n"
+      << streams_list();
 }
 
 TEST(Guide, HasTheModes) {
