@@ -122,6 +122,7 @@ if(NOT TETHER_TARGET_ONLY)
         "data/:/usr/share/tether/"
         "examples/own-sut:/usr/share/doc/libtether-client-dev/examples/own-sut"
         "examples/depth-camera:/usr/share/doc/libtether-client-dev/examples/depth-camera"
+        "examples/node-companion:../examples/node-companion"
         "examples/own-simulator:../examples/own-simulator"
         "examples/python-face-anchor:/usr/share/doc/python3-tether/examples/python-face-anchor"
         "host/sim/protocol/schema/:/usr/share/tether/schema/"
