@@ -183,6 +183,19 @@ bool is_equally_fast_and_reaches(const Compared& other, const Compared& missed,
          reaches_more_often(*other.verdict, *missed.verdict, comparisons);
 }
 
+/// Why one that reaches the goal is not compared with one that misses it, as a part of a sentence;
+/// empty: the two do not differ in what they fly with, or it is not known.
+std::string difference_of(const Compared& other, const Compared& missed) {
+  if (!other.pace() || !missed.pace()) return "";
+  if (!have_same_sensors(other, missed)) return "its sensors or its simulator differ";
+  if (other.pace()->radio != missed.pace()->radio) return "its radio differs";
+  const Speed &a = other.pace()->speed, &b = missed.pace()->speed;
+  if (!std::ranges::equal(a.programs, b.programs, is_same_program))
+    return "its program is another build, or has other libraries, arguments or files";
+  if (!have_same_set_up(a, b)) return "something else starts its program, or its power differs";
+  return is_same_cpu(a.emulator, b.emulator) ? "" : "its emulated CPU is another model";
+}
+
 // What happened in a flight.
 
 /// The clause on a task that the program never began, although all tasks before it reached their
@@ -359,6 +372,10 @@ MissReason reason_of(const Compared& missed, const std::vector<Compared>& all,
                     comparison_text(*faster.front(), missed));
   if (const std::string cause = in_each(missed, possible_cause); !cause.empty())
     return {Evidence::kPossibleCause, "", cause};
+  for (const Compared& other : all)
+    if (is_evidence(*other.verdict) && reaches_instead(other))
+      if (const std::string why = difference_of(other, missed); !why.empty())
+        return {Evidence::kNotComparable, other.label, why};
   return {};
 }
 

@@ -89,6 +89,8 @@ std::string missed_goals_text(const ConditionVerdict& condition) {
 constexpr std::array kMissReasons = {
     " “{condition}” {text}.",
     " {text}.",
+    " “{condition}” reaches it, but is not compared, since {text}: whether speed matters is not "
+    "known.",
     " No condition that is clearly faster and otherwise the same was flown, so whether speed "
     "matters "
     "is not known.",
@@ -307,11 +309,15 @@ std::string left_out_in_lead(const ConditionVerdict& condition) {
   return condition.left_out.empty() ? kDoubtful : kNotAsWritten;
 }
 
+/// Empty: as that on several flights.
+std::string_view lead_of_one_flight(const ConditionVerdict& condition) {
+  return condition.is_one_flight() ? words_of(condition.ruling).lead_of_one : "";
+}
+
 std::string lead_of(const ConditionVerdict& condition) {
-  const Words& words = words_of(condition.ruling);
-  const bool is_of_one = condition.is_one_flight() && !words.lead_of_one.empty();
-  std::string lead(is_of_one ? words.lead_of_one : words.lead);
-  return lead + left_out_in_lead(condition);
+  const std::string_view of_one = lead_of_one_flight(condition);
+  return std::string(of_one.empty() ? words_of(condition.ruling).lead : of_one) +
+         left_out_in_lead(condition);
 }
 
 /// Of one of several points with the same ruling: what it rests on, in sentences.
@@ -384,6 +390,11 @@ campaign::ConditionResults results_of(const std::string& condition,
 
 std::string_view name(Ruling ruling) {
   return words_of(ruling).name;
+}
+
+std::string name(const ConditionVerdict& condition) {
+  const std::string of_one(lead_of_one_flight(condition));
+  return of_one.empty() ? std::string(name(condition.ruling)) : in_a_sentence(of_one);
 }
 
 std::string missed_text(const MissedLimits& missed, bool of_one) {

@@ -299,9 +299,9 @@ std::vector<Advice> advice_on(const ConditionVerdict& lead) {
         advice.push_back({Kind::kVarySeeds});
       else if (!is_within_spread(lead) && lead.failed == 0)
         advice.push_back({Kind::kFlyMore, lead.condition, flights_to_decide(lead)});
-      if (lead.reached < lead.flown && is_too_slow)
-        advice.push_back({Kind::kSpeedUpStage, lead.pace->stages.front().stage});
-      advice.push_back({Kind::kFindThreshold, lead.condition});
+      // Whether speed is the reason of those that missed the goal is not known.
+      advice.push_back(
+          {lead.reached < lead.flown ? Kind::kTryFaster : Kind::kFindThreshold, lead.condition});
       break;
     case Ruling::kFastEnough:
       advice.push_back({Kind::kFindThreshold, lead.condition});

@@ -112,11 +112,11 @@ std::string verdict_picture(const std::vector<std::vector<Verdict>>& groups) {
   std::string flights, words, bars_words;
   double y = kPictureTop, most_s = 0.0;
   for (const PictureRow& row : rows) {
-    flights += text_svg(0.0, y + 4.0, fmt::format("{}: {}", row.label, name(row.condition->ruling)),
+    flights += text_svg(0.0, y + 4.0, fmt::format("{}: {}", row.label, name(*row.condition)),
                         "start", 13) +
                signs(*row.condition, y + 20.0);
-    words += fmt::format("; {}: {}, {} of {} reach the goal", row.label,
-                         name(row.condition->ruling), row.condition->reached, row.condition->flown);
+    words += fmt::format("; {}: {}, {} of {} reach the goal", row.label, name(*row.condition),
+                         row.condition->reached, row.condition->flown);
     y += kPictureRow;
     if (!has_bar(*row.condition)) continue;
     bars_words += "; " + bar_text(row);

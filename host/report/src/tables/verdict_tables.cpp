@@ -61,7 +61,7 @@ Table rulings_table(const std::vector<Verdict>& points) {
       const bool says_nothing = one.ruling == Ruling::kFreeRunning || one.ruling == Ruling::kUnseen;
       std::vector<std::string> row = {
           one.condition,
-          std::string(name(one.ruling)),
+          name(one),
           fmt::format("{} of {}", one.reached, one.flown),
           !one.share || says_nothing ? kNone
           : one.flown > 1 && one.is_one_flight()

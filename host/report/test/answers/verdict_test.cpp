@@ -278,6 +278,9 @@ TEST(Verdict, SaysWhatItsWordsRestOn) {
   };
   EXPECT_THAT(text(flights(7, 3)), HasSubstr("Undecided: on “target” 3 of 10 flights miss"));
   EXPECT_THAT(text(flights(7, 3)), HasSubstr("Fly more: if this share continues, "));
+  EXPECT_THAT(advice_of({verdict_of(flights(7, 3), {slow_pace()})}),
+              testing::Not(testing::Contains(HasSubstr("Speed up"))));
+  EXPECT_EQ(rulings_table({verdict_of(flights(1, 0))}).rows[0][1], "fast enough in this flight");
   EXPECT_THAT(text(flights(10, 0)), HasSubstr("36 flights decide"));
   EXPECT_THAT(text(flights(9, 1)), HasSubstr("so near to 9 of 10"));
   EXPECT_THAT(text(flights(1, 0)), StartsWith("Fast enough in this flight: "));
@@ -338,7 +341,8 @@ TEST(Verdict, SaysWhatAnImageCostsOnASharedBoard) {
   EXPECT_THAT(answers_of({verdict})[0].rest,
               HasSubstr("an image costs 100 ms on “obc”, 48 % of it waiting for the cores that 2 "
                         "programs share, and “detect” takes 81 % of the computing time"));
-  EXPECT_THAT(advice_of({verdict_of(flights(9, 1), {pace})}),
+  verdict.advice.push_back({Advice::Kind::kSpeedUpStage, "detect"});
+  EXPECT_THAT(advice_of({verdict}),
               testing::Contains(HasSubstr("Computing and waiting for cores take up to")));
   EXPECT_THAT(advice_of({verdict})[1],
               HasSubstr("; to find how many UAVs it carries: `tether size pair --condition "

@@ -60,6 +60,7 @@ struct MissReason {
     kFasterReaches,  ///< another condition differs in speed only, is faster, and reaches it
     kMissesOwnPace,  ///< computing alone takes longer than a limit on its pace allows
     // It is not known.
+    kNotComparable,    ///< another one reaches it, but differs in more than speed: see `text`
     kNothing,          ///< no faster condition was flown, or the speeds are not known
     kFasterUndecided,  ///< another condition is faster, but does not show that speed matters
     kPossibleCause,    ///< something else happened that can be the reason: see `text`
@@ -142,6 +143,9 @@ struct ConditionVerdict {
 /// Whether what is in doubt, or this doubt alone, could have moved a flight over its limits.
 bool is_within_spread(const ConditionVerdict& verdict, const FlightsInDoubt& doubt);
 bool is_within_spread(const ConditionVerdict& verdict);
+
+/// The ruling's name, or "fast enough in this flight" where all that is known is one flight.
+std::string name(const ConditionVerdict& condition);
 
 struct Advice {
   enum class Kind {
