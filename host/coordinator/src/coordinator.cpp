@@ -407,7 +407,8 @@ RunReport Coordinator::Impl::close_run() {
       .largest_grid_error = footer.largest_grid_error,
       .stops = footer.stops,
       .largest_overshoot = footer.largest_overshoot,
-      .suts = {}};
+      .suts = {},
+      .lost_uav = ended_->lost_uav};
   for (const Session& session : sessions_) {
     if (session.joined() && !time_of(session).has_left())
       refuse(session.peer, link::Refusal::Reason::kRunEnded, "the run has ended: " + report.reason);

@@ -106,7 +106,7 @@ void Coordinator::Impl::on_closed(link::PeerId peer, const Failure& failure) {
   const Party lost = party(*session, host_clock_());
   const std::string where = lost.bound ? describe_state(lost) + "; " : "";
   end({RunEnd::kSutLost, fmt::format("lost the SUT of UAV \"{}\"", session->uav_name),
-       where + failure.message});
+       where + failure.message, session->uav_name});
 }
 
 void Coordinator::Impl::join(link::PeerId peer, const link::Hello& hello) {

@@ -127,12 +127,12 @@ bool SutProcesses::has_failed_to_connect(const std::string& address) {
   });
 }
 
-std::string SutProcesses::post_mortem(const std::string& reason) {
-  std::string text;
+std::string SutProcesses::post_mortem(const std::string& reason, const std::string& lost_uav) {
+  std::string lost, others;
   for (Sut& sut : suts_)
     if (sut.process->wait(kEndLimit) && !has_ended_well(sut))
-      text += "; " + describe_end(sut, reason);
-  return text;
+      (sut.uav == lost_uav ? lost : others) += "; " + describe_end(sut, reason);
+  return lost + others;
 }
 
 std::optional<std::string> SutProcesses::lost() {

@@ -41,9 +41,10 @@ class SutProcesses {
   std::optional<std::string> lost();
   /// Whether a SUT has ended with that address in the last line of its output.
   bool has_failed_to_connect(const std::string& address);
-  /// After the loss of a SUT: how processes ended, each after "; ". Empty if nothing is known.
-  /// Output is left out that ends with the last part of the reason, after ": ".
-  std::string post_mortem(const std::string& reason);
+  /// After the loss of a SUT: how processes ended, each after "; ", the lost one first, since
+  /// others end because of it. Empty if nothing is known. Output is left out that ends with the
+  /// last part of the reason, after ": ".
+  std::string post_mortem(const std::string& reason, const std::string& lost_uav = "");
   /// Waits until finished SUTs have exited. Returns a note for each that was ended by a signal,
   /// that did not exit, or whose exit code is a failure although it reported its goal as reached.
   std::vector<std::string> await_exit(const std::vector<coordinator::SutReport>& reports);

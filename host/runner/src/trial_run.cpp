@@ -422,7 +422,7 @@ std::string TrialRun::explained(const TrialEnd& end) {
   std::string causes;
   if (may_have_stopped_sut(end))
     if (const auto stopped = suts_.stopped()) causes += "; " + *stopped;
-  if (has_unexplained_sut(end)) causes += suts_.post_mortem(end.report.reason);
+  if (has_unexplained_sut(end)) causes += suts_.post_mortem(end.report.reason, end.report.lost_uav);
   if (end.report.end == RunEnd::kSimulatorLost) causes += simulator_.post_mortem();
   return with_causes(end.report, causes) + reach_hint(end);
 }

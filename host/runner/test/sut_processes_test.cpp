@@ -75,6 +75,8 @@ TEST_F(Suts, NameTheMissingCallsOfAProgramThatEndsWithoutAnError) {
 TEST_F(Suts, ReportSignals) {
   start({"exit 0", "kill -SEGV $$"});
   EXPECT_THAT(suts_.post_mortem("lost"), testing::Not(HasSubstr("tether_finish()")));
+  EXPECT_THAT(suts_.post_mortem("lost", "uav2"), testing::StartsWith("; the SUT of UAV \"uav2\""));
+  EXPECT_THAT(suts_.post_mortem("lost", "uav1"), testing::StartsWith("; the SUT of UAV \"uav1\""));
   EXPECT_THAT(suts_.await_exit({}), ElementsAre(HasSubstr("\"uav2\"")));
   EXPECT_THAT(suts_.post_mortem(""),
               testing::EndsWith("was ended by signal 11 (Segmentation fault)"));

@@ -111,8 +111,9 @@ std::string_view name(RunEnd end);
 /// The end of a run, for people too.
 struct Ending {
   RunEnd how = RunEnd::kFinished;
-  std::string reason;  ///< one line; names the cause
-  std::string seen{};  ///< of a cause that the coordinator does not know: how it noticed
+  std::string reason;      ///< one line; names the cause
+  std::string seen{};      ///< of a cause that the coordinator does not know: how it noticed
+  std::string lost_uav{};  ///< whose SUT disconnected; empty: none did
 };
 
 /// What the threads of a SUT do at one instant.
@@ -162,6 +163,7 @@ struct RunReport {
   std::uint64_t stops = 0;        ///< of concurrent SUTs
   Duration largest_overshoot{0};  ///< of a stop beyond the timestamp of its reply
   std::vector<SutReport> suts;    ///< in the world's order of UAVs
+  std::string lost_uav{};         ///< as in Ending
 };
 
 /// Progress of a run, for display.
