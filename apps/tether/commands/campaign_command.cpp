@@ -22,12 +22,15 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include <tether/base/counted.h>
 #include <tether/base/error.h>
 #include <tether/campaign/campaign_folder.h>
 #include <tether/campaign/campaign_results.h>
 #include <tether/campaign/run_campaign.h>
 #include <tether/os/program.h>
+#include <tether/os/shell_word.h>
 #include <tether/os/text_file.h>
 #include <tether/report/junit.h>
 #include <tether/runner/campaign_trials.h>
@@ -165,6 +168,16 @@ campaign::CampaignOutcome fly(const Flying& f, const std::optional<shards::Engin
       progress);
 }
 
+/// "to continue, type: tether campaign face_anchor --out out --resume"
+std::string how_to_continue(const CampaignOptions& options, const std::filesystem::path& out) {
+  const std::string part = !options.shard.empty() ? "--shard " + options.shard
+                           : options.engine.engine.empty()
+                               ? "--resume"
+                               : "--resume --engine " + options.engine.engine;
+  return fmt::format("to continue, type: tether campaign {} --out {} {}",
+                     os::shell_word(options.campaign.string()), os::shell_word(out.string()), part);
+}
+
 int run_trials(const CampaignOptions& options, const std::stop_token& stop) {
   const scenario::Campaign campaign = load(options);
   const auto engine = engine_of(options.engine);
@@ -189,18 +202,21 @@ int run_trials(const CampaignOptions& options, const std::stop_token& stop) {
   for (const std::string& warning : folder.warnings()) complain("warning: " + warning);
 
   const Flying flying{options, campaign, folder, settings, files, jobs, stop};
-  const auto outcome = with_bar([&](const campaign::ProgressCallback& progress) {
-    return fly(flying, engine, servers, progress);
-  });
+  const auto outcome = [&] {
+    try {
+      return with_bar([&](const campaign::ProgressCallback& progress) {
+        return fly(flying, engine, servers, progress);
+      });
+    } catch (const Error&) {
+      complain("the trials that have ended are kept; " + how_to_continue(options, out));
+      throw;
+    }
+  }();
   const campaign::CampaignResults results = campaign::read_campaign_results(out);
   if (!options.junit.empty())
     os::write_file_atomically(options.junit, report::to_junit(results, out));
   if (outcome.interrupted) {
-    say("tether: interrupted; to continue, type: tether campaign {} --out {} {}\n",
-        options.campaign.string(), out.string(),
-        !options.shard.empty() ? "--shard " + options.shard
-        : engine               ? "--resume --engine " + options.engine.engine
-                               : "--resume");
+    say("tether: interrupted; {}\n", how_to_continue(options, out));
     return exit_code(ErrorCode::kSetup);
   }
   if (!options.shard.empty())
