@@ -102,5 +102,9 @@ TEST(Verdict, OfACountAtItsLimitIsUndecidedOnABusyMachine) {
   EXPECT_EQ(ruling_of(scenario), Ruling::kFastEnoughSoFar);
 }
 
+TEST(RulingsTable, SaysThatOneFlightIsAllThatIsKnown) {
+  EXPECT_EQ(rulings_table({verdict_of(flights(1, 0))}).rows[0][1], "fast enough in this flight");
+}
+
 }  // namespace
 }  // namespace tether::report
