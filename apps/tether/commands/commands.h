@@ -40,6 +40,7 @@ Command timing_command();
 Command frames_command();
 Command plot_command();
 Command world_check_command();
+Command model_check_command();
 Command target_check_command();
 Command list_command();
 

@@ -30,6 +30,8 @@ using scenario::ShippedKind;
 constexpr const char* kWorld = "yard";
 constexpr const char* kModel = "hummingbird";
 constexpr const char* kProfile = "paper_streaming";
+/// Above the ground, where a flight controller sets it down. Of another UAV, little is known.
+constexpr double kHeight_m = 0.1, kHeightOfOthers_m = 0.5;
 constexpr double kTimeLimit_s = 120.0;
 constexpr double kCpuFactor = 6.0;
 
@@ -119,16 +121,17 @@ Values values_of(const ProgramOptions& options, const std::string& profile,
   const std::string controller =
       options.flight_controller.value_or(options.uses_library ? "none" : "built-in");
   const double limit_s = options.time_limit_s.value_or(kTimeLimit_s);
-  const std::string place = fmt::format(
-      "[{}]", fmt::join(options.position_m.value_or(std::vector<double>{0.0, 0.0, 0.1}), ", "));
+  const std::string model = options.model.value_or(kModel);
+  const Value model_value = file_value(shipped, ShippedKind::kModel, "--model", model);
+  const bool is_shipped = shipped.named(ShippedKind::kModel, model, {}).has_value();
+  const std::vector<double> start = {0.0, 0.0, is_shipped ? kHeight_m : kHeightOfOthers_m};
+  const std::string place =
+      fmt::format("[{}]", fmt::join(options.position_m.value_or(start), ", "));
   Values values = {
       {"name", {toml_text(script_name(options.command))}},
       {"world",
        file_value(shipped, ShippedKind::kWorld, "--world", options.world.value_or(kWorld))},
-      {"model",
-       file_value(shipped, ShippedKind::kModel, "--model", options.model.value_or(kModel))},
-      {"profile", file_value(shipped, ShippedKind::kProfile, "--profile",
-                             profile.empty() ? kProfile : profile)},
+      {"model", model_value},
       {"time_limit", number_value("--time-limit", limit_s)},
       {"end", {toml::number_text(limit_s + 1.0), number_value("--time-limit", limit_s).option}},
       {"position", {place, "--position " + place}},
@@ -141,6 +144,10 @@ Values values_of(const ProgramOptions& options, const std::string& profile,
   if (options.controller_path)
     values["controller_path"] = {toml_text(fs::absolute(*options.controller_path)),
                                  "--controller-path " + *options.controller_path};
+  // The sensors of another UAV are as its file says.
+  if (!profile.empty() || is_shipped)
+    values["profile"] = file_value(shipped, ShippedKind::kProfile, "--profile",
+                                   profile.empty() ? kProfile : profile);
   if (options.starts_in_air) values["starts_in_air"] = {"true", "--starts-in-air"};
   return values;
 }
@@ -166,7 +173,7 @@ Options program_rows(ProgramOptions& o) {
       {"--model MODEL", "For a program: name of a shipped UAV, or a file (SDF)", &o.model,
        usually({}, kModel)},
       {"--position X,Y,Z",
-       "For a program: where the UAV starts, in metres",
+       "For a program: where the UAV starts, in metres; 0,0,0.5 for a --model of your own",
        &o.position_m,
        {.has_commas = true, .count = 3, .usual = "0,0,0.1"}},
       {"--flight-controller", "For a program: what flies the UAV at its commands",

@@ -3,7 +3,6 @@
 #include "reading/world_options.h"
 #include "terminal/print.h"
 
-#include <limits>
 #include <vector>
 
 #include <fmt/format.h>
@@ -40,12 +39,8 @@ int check_world(const WorldCheckOptions& options, const std::stop_token&) {
   const std::string step =
       fmt::format("step {} ms{}", 1e3 * to_seconds(world.step), sim::set_at(world));
   find_back_end("mujoco").prepare(std::move(world), collect);
-  print(fmt::format("{}: can be used ({}, {}, {}); {}\n{}", file, counted(models, "model"),
-                    counted(lights, "light"), step,
-                    warnings.empty() ? "everything is simulated as written"
-                                     : fmt::format("not simulated as written: {}",
-                                                   counted(warnings.size(), "part")),
-                    grouped(warnings, std::numeric_limits<std::size_t>::max())));
+  print(fmt::format("{}: can be used ({}, {}, {}); {}", file, counted(models, "model"),
+                    counted(lights, "light"), step, as_written_text(warnings)));
   return 0;
 }
 

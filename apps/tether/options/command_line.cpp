@@ -47,22 +47,25 @@ Examples:
 /usr/share/doc/tether/guide.)";
 
 std::vector<Command> commands() {
-  return {run_command(),
-          campaign_command(),
-          size_command(),
-          report_command(),
-          audit_command(),
-          timing_command(),
-          frames_command(),
-          plot_command(),
-          {"world", "Check worlds before a flight", {}, "Examples:\n  tether world check room"},
-          world_check_command(),
-          {"target",
-           "Check machines on which a SUT can run",
-           {},
-           "Examples:\n  tether target check ssh://pi@board.local"},
-          target_check_command(),
-          list_command()};
+  return {
+      run_command(),
+      campaign_command(),
+      size_command(),
+      report_command(),
+      audit_command(),
+      timing_command(),
+      frames_command(),
+      plot_command(),
+      {"world", "Check worlds before a flight", {}, "Examples:\n  tether world check room"},
+      world_check_command(),
+      {"model", "Check UAVs before a flight", {}, "Examples:\n  tether model check hummingbird"},
+      model_check_command(),
+      {"target",
+       "Check machines on which a SUT can run",
+       {},
+       "Examples:\n  tether target check ssh://pi@board.local"},
+      target_check_command(),
+      list_command()};
 }
 
 /// What to do about a word that no command takes here.

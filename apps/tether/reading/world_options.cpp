@@ -1,6 +1,10 @@
 #include "reading/world_options.h"
 
+#include <limits>
+
 #include <fmt/format.h>
+
+#include <tether/base/counted.h>
 
 namespace tether::app {
 
@@ -29,6 +33,12 @@ std::string summary_of(std::span<const Warning> warnings, const std::string& lis
                      warnings.size(), list, grouped(warnings, kFew));
   text.pop_back();
   return text;
+}
+
+std::string as_written_text(std::span<const Warning> warnings) {
+  if (warnings.empty()) return "everything is simulated as written\n";
+  return fmt::format("not simulated as written: {}\n{}", counted(warnings.size(), "part"),
+                     grouped(warnings, std::numeric_limits<std::size_t>::max()));
 }
 
 }  // namespace tether::app

@@ -19,4 +19,7 @@ sim::WorldOptions world_options(const ReadingOptions& reading,
 /// with their numbers, and `list` as the place of the whole list.
 std::string summary_of(std::span<const Warning> warnings, const std::string& list);
 
+/// "everything is simulated as written", or how many parts are not, and each of them.
+std::string as_written_text(std::span<const Warning> warnings);
+
 }  // namespace tether::app

@@ -8,6 +8,8 @@
 #include <limits>
 #include <string>
 
+#include <fmt/format.h>
+
 #include <tether/sim/bodies.h>
 #include <tether/sim/clearance.h>
 
@@ -21,6 +23,7 @@ using uav::Vec3;
 constexpr double kTouching_m = 1e-3;
 /// What a UAV leaves when it is lifted by this, it stands on.
 constexpr double kLift_m = 0.02;
+constexpr double kMostLift_m = 1.0;
 constexpr double kFarFromAnchors_m = 50.0;
 /// More than distances are rounded by.
 constexpr double kRounding_m = 1e-6;
@@ -215,8 +218,18 @@ void ClearanceMeter::warn_of_starts(const WarningSink& warn) const {
     if (!floor.empty()) {
       warn_that("starts below the floor '" + std::string(floor) + "'; set its position_m");
     } else if (is_touching(measure(i, starts_)) && is_touching(above)) {
-      warn_that("starts inside '" + std::string(above->to) +
-                "' or touching it; set its position_m");
+      // As a model does whose legs reach further down than its start is high.
+      const auto is_free = [&](double height_m) {
+        lifted[i].p.z = p_WB.z + height_m;
+        return !is_touching(measure(i, lifted));
+      };
+      double lift_m = kLift_m;
+      while (lift_m < kMostLift_m && !is_free(lift_m)) lift_m += kLift_m;
+      warn_that("starts inside '" + std::string(above->to) + "' or touching it; " +
+                (lift_m < kMostLift_m
+                     ? fmt::format("with position_m = [{:g}, {:g}, {:.2f}] it does not", p_WB.x,
+                                   p_WB.y, p_WB.z + lift_m)
+                     : "set its position_m"));
     }
     const PlacedAnchor* nearest = nullptr;
     for (const PlacedAnchor& anchor : world_.anchors) {

@@ -277,4 +277,12 @@ World load_world(const WorldRequest& request, const WarningSink& any_warn) {
       });
 }
 
+Uav load_uav(const std::filesystem::path& model, const WorldOptions& options, double gravity_m_s2,
+             const WarningSink& warn) {
+  const WarningSink printable = printable_warnings(warn);
+  return read_file(model, options, SdfPurpose::kUav, printable, [&](const SdfSource& source) {
+    return read_uav(source, gravity_m_s2, printable);
+  });
+}
+
 }  // namespace tether::sim

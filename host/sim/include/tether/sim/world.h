@@ -269,6 +269,10 @@ struct Uav {
   std::optional<energy::Model> energy{};  ///< none: energy is not simulated
   std::vector<Payload> payloads{};
   std::vector<uav::Joint> joints{};  ///< at most uav::kMaxJoints
+  /// What its file has of `airframe`: "<tether:multirotor>", or plugins of its motors.
+  std::string airframe_from{};
+  /// What of <tether:multirotor> it lacks, which has the values of the Hummingbird.
+  std::vector<std::string> by_default{};
 };
 
 /// An anchor: a model of the world, or a UAV, that SUTs receive in their catalogue.

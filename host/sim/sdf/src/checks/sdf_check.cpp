@@ -114,7 +114,7 @@ const ElementTable kWithoutEffect = {
     {"physics", {"real_time_factor", "real_time_update_rate"}},
     {"scene", {"grid", "origin_visual"}},
     {"model", {"allow_auto_disable"}},
-    {"sensor", {"always_on", "visualize", "topic"}},
+    {"sensor", {"always_on", "visualize", "topic", "gz_frame_id", "ignition_frame_id"}},
     {"camera", {"optical_frame_id"}},
     {"depth_camera", {"output"}},
 };
@@ -322,7 +322,8 @@ class Walk {
     const std::string& name = element->GetName();
     if (contains(kWithoutEffect, parent, name) || is_own_plugin(element)) return false;
     if (name == "inertial" && is_in_static_model(element)) return false;
-    if (purpose_ == SdfPurpose::kUav && parent == "model" && is_odometry_plugin(element))
+    if (purpose_ == SdfPurpose::kUav && parent == "model" &&
+        (is_odometry_plugin(element) || motor_plugin(element) != MotorPlugin::kNone))
       return true;
     if (purpose_ == SdfPurpose::kUav && parent == "model" && is_battery_plugin(element)) {
       warn_of_ignored(source_, element, warn_);
@@ -424,6 +425,21 @@ bool is_odometry_plugin(const sdf::ElementPtr& element) {
   return is_plugin_of(element, "OdometryPublisher", "odometry-publisher");
 }
 
+MotorPlugin motor_plugin(const sdf::ElementPtr& element) {
+  struct Row {
+    const char *class_name, *file;
+    MotorPlugin kind;
+  };
+  constexpr Row kRows[] = {
+      {"MulticopterMotorModel", "multicopter-motor-model", MotorPlugin::kMotorModel},
+      {"MulticopterMotorModel", "gazebo_motor_model", MotorPlugin::kMotorModel},
+      {"ArduPilotPlugin", "ArduPilotPlugin", MotorPlugin::kArduPilot},
+      {"systems::LiftDrag", "LiftDragPlugin", MotorPlugin::kLiftDrag}};
+  for (const Row& row : kRows)
+    if (is_plugin_of(element, row.class_name, row.file)) return row.kind;
+  return MotorPlugin::kNone;
+}
+
 void warn_at(const SdfSource& source, const sdf::ElementPtr& element, const Effect& effect,
              const std::string& message, const WarningSink& warn) {
   if (warn)
@@ -450,6 +466,13 @@ std::vector<double> read_numbers(const SdfSource& source, const sdf::ElementPtr&
   }
   check_numbers_of(source, element, *numbers, text);
   return *numbers;
+}
+
+std::optional<double> read_number(const SdfSource& source, const sdf::ElementPtr& parent,
+                                  const char* name) {
+  const sdf::ElementPtr child = parent->FindElement(name);
+  if (!child) return std::nullopt;
+  return read_numbers(source, child, 1)[0];
 }
 
 void check_elements(const SdfSource& source, SdfPurpose purpose, const WarningSink& warn) {

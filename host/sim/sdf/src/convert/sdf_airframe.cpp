@@ -111,37 +111,48 @@ void read_body(const SdfSource& source, const sdf::ElementPtr& model, const Link
 
 }  // namespace
 
-MultirotorParameters read_airframe(const SdfSource& source, const sdf::ElementPtr& model,
-                                   const Link& body, double gravity_m_s2) {
-  const sdf::ElementPtr multirotor = model->FindElement("tether:multirotor");
-  if (!multirotor) {
-    refuse(source, model,
-           "has no <tether:multirotor>; a UAV needs one, with its rotors, "
-           "<thrust_coefficient_N_s2> and <max_rotor_speed_rad_s>: the guide your-own-uav.md");
-  }
-  MultirotorParameters airframe;
+std::set<std::string> read_airframe(const SdfSource& source, const sdf::Model& model,
+                                    const std::vector<Part>& parts, double gravity_m_s2, Uav& uav) {
+  const sdf::ElementPtr multirotor = model.Element()->FindElement("tether:multirotor");
+  const bool has_plugins = has_motor_plugins(model);
+  if (!multirotor && !has_plugins)
+    refuse(source, model.Element(),
+           "has neither a <tether:multirotor> nor plugins of motors (MulticopterMotorModel, "
+           "ArduPilotPlugin). A UAV needs its rotors, <thrust_coefficient_N_s2> and "
+           "<max_rotor_speed_rad_s>: the guide your-own-uav.md");
+  MultirotorParameters& airframe = uav.airframe;
   const MultirotorParameters typical = uav::hummingbird();
   std::vector<const char*> needed = {"rotor"};
   for (const NumberElement& number : kNumbers) {
     if (!number.may_be_missing) needed.push_back(number.name);
     airframe.*number.member = typical.*number.member;
   }
-  read_children(source, multirotor, airframe);
-  require(source, multirotor, needed);
+  Motors motors;
+  if (multirotor) {
+    read_children(source, multirotor, airframe);
+    require(source, multirotor, needed);
+  } else {
+    motors = read_motors(source, model, parts, uav::inverse(uav.body.X_ML), airframe);
+  }
+  uav.airframe_from = multirotor ? "<tether:multirotor>" : "the plugins of its motors";
+  for (const NumberElement& number : kNumbers)
+    if (multirotor ? !multirotor->HasElement(number.name) : !motors.given.contains(number.name))
+      uav.by_default.emplace_back(number.name);
+  const sdf::ElementPtr declared_by = multirotor ? multirotor : model.Element();
   if (airframe.rotors.size() < kMinRotors ||
       airframe.rotors.size() > uav::MultirotorState::kMaxRotors) {
-    refuse(source, multirotor,
+    refuse(source, declared_by,
            "has " + std::to_string(airframe.rotors.size()) + " rotors; it must have 4 to 8");
   }
-  read_body(source, model, body, airframe);
+  read_body(source, model.Element(), uav.body, airframe);
 
   const double max_thrust_N = static_cast<double>(airframe.rotors.size()) *
                               airframe.thrust_coefficient * airframe.max_rotor_speed_rad_s *
                               airframe.max_rotor_speed_rad_s;
   if (max_thrust_N <= airframe.mass_kg * gravity_m_s2) {
-    refuse(source, multirotor, "has less thrust than weight with all rotors at full speed");
+    refuse(source, declared_by, "has less thrust than weight with all rotors at full speed");
   }
-  return airframe;
+  return motors.joints;
 }
 
 }  // namespace tether::sim

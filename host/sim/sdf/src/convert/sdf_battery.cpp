@@ -8,8 +8,7 @@ constexpr double kSecondsPerHour = 3600.0;
 
 double number_or(const SdfSource& source, const sdf::ElementPtr& plugin, const char* name,
                  double fallback) {
-  const sdf::ElementPtr element = plugin->FindElement(name);
-  return element ? read_numbers(source, element, 1)[0] : fallback;
+  return read_number(source, plugin, name).value_or(fallback);
 }
 
 }  // namespace

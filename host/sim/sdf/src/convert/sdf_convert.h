@@ -5,6 +5,7 @@
 
 #include <initializer_list>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -61,9 +62,30 @@ std::optional<Sensor> read_sensor(const SdfSource& source, const sdf::Sensor& se
 /// Adds the sensor that the model's odometry plugin stands for, if it has one.
 void add_odometry(const SdfSource& source, const sdf::ElementPtr& model, Uav& uav);
 
-/// Airframe of a UAV: <tether:multirotor>, with mass and inertia of the body.
-uav::MultirotorParameters read_airframe(const SdfSource& source, const sdf::ElementPtr& model,
-                                        const Link& body, double gravity_m_s2);
+/// A link of a UAV's model, or of a model that is nested in it.
+struct Part {
+  const sdf::Link* link = nullptr;
+  std::string name{};  ///< "iris::rotor_0"
+  uav::Pose X_MN{};    ///< of the model that has the link, in the outermost one
+};
+
+/// Whether plugins of the model, or of one nested in it, say how its rotors turn and push.
+bool has_motor_plugins(const sdf::Model& model);
+/// What these plugins said of an airframe.
+struct Motors {
+  std::set<std::string> joints{};  ///< that turn rotors
+  std::set<std::string> given{};   ///< numbers, by their names in <tether:multirotor>
+};
+/// Reads them into an airframe.
+/// @throws Error(kBadFile) if a rotor does not push up, or they differ, or a number is missing.
+Motors read_motors(const SdfSource& source, const sdf::Model& model, const std::vector<Part>& parts,
+                   const uav::Pose& X_BM, uav::MultirotorParameters& airframe);
+
+/// Airframe of a UAV, with mass and inertia of the body: of <tether:multirotor>, else of the
+/// plugins of its motors. Says in `uav` where it is from.
+/// @return joints that turn rotors.
+std::set<std::string> read_airframe(const SdfSource& source, const sdf::Model& model,
+                                    const std::vector<Part>& parts, double gravity_m_s2, Uav& uav);
 
 /// The battery of a UAV by a battery plugin of its model; none if it has none.
 std::optional<energy::Battery> read_battery(const SdfSource& source, const sdf::ElementPtr& model);

@@ -1,6 +1,7 @@
 #include "convert/sdf_convert.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <utility>
 
@@ -11,18 +12,72 @@ namespace {
 /// Of the airframe's mass: a part that is lighter does not change how it flies.
 constexpr double kLightPart = 0.01;
 
+/// Of products of inertia to moments: what is less does not change how it flies.
+constexpr double kSkew = 0.05;
+
+/// The links of a model, and then those of the models that are nested in it.
+void add_parts(const SdfSource& source, const sdf::Model& model, const std::string& scope,
+               const uav::Pose& X_MN, std::vector<Part>& parts) {
+  for (std::uint64_t i = 0; i < model.LinkCount(); ++i) {
+    const sdf::Link* const link = model.LinkByIndex(i);
+    parts.push_back({link, scope + link->Name(), X_MN});
+  }
+  for (std::uint64_t i = 0; i < model.ModelCount(); ++i) {
+    const sdf::Model& nested = *model.ModelByIndex(i);
+    add_parts(source, nested, scope + nested.Name() + "::", X_MN * resolved_pose(source, nested),
+              parts);
+  }
+}
+
 /// The first link, or the one named base_link.
-const sdf::Link& find_body_link(const SdfSource& source, const sdf::Model& model) {
-  if (const sdf::Link* base = model.LinkByName("base_link")) return *base;
-  if (model.LinkCount() == 0) refuse(source, model.Element(), "has no link");
-  return *model.LinkByIndex(0);
+const Part& find_body(const SdfSource& source, const sdf::Model& model,
+                      const std::vector<Part>& parts) {
+  if (parts.empty()) refuse(source, model.Element(), "has no link");
+  const auto base = std::ranges::find_if(
+      parts, [](const Part& part) { return part.link->Name() == "base_link"; });
+  return base == parts.end() ? parts.front() : *base;
+}
+
+ignition::math::Pose3d to_library(const uav::Pose& pose) {
+  return {pose.p.x, pose.p.y, pose.p.z, pose.q.w, pose.q.x, pose.q.y, pose.q.z};
+}
+
+/// Makes one rigid body of all parts: it has the mass of all, and its frame is at their centre of
+/// mass, with the axes of the body's link.
+void weld(const SdfSource& source, const sdf::Model& model, const std::vector<Part>& parts,
+          const WarningSink& warn, Link& body) {
+  const uav::Pose X_BM = uav::inverse(body.X_ML);
+  std::optional<ignition::math::Inertiald> all;
+  for (const Part& part : parts) {
+    if (!part.link->Element()->HasElement("inertial")) continue;  // SDF's 1 kg, that nobody weighed
+    const auto& own = part.link->Inertial();
+    const uav::Pose X_BL = X_BM * part.X_MN * resolved_pose(source, *part.link);
+    const ignition::math::Inertiald placed(own.MassMatrix(),
+                                           to_library(X_BL * to_pose(own.Pose())));
+    all = all ? *all + placed : placed;
+  }
+  if (!all) refuse(source, model.Element(), "has no link with an <inertial>");
+  const auto moment = all->Moi();
+  const double skew =
+      std::max({std::abs(moment(0, 1)), std::abs(moment(0, 2)), std::abs(moment(1, 2))});
+  if (skew > kSkew * std::min({moment(0, 0), moment(1, 1), moment(2, 2)}))
+    warn_at(source, model.Element(), Effect(Consequence::kBehavesDifferent, false),
+            "has products of inertia, which are left out", warn);
+  const uav::Pose X_LB{to_vec3(all->Pose().Pos()), {}};
+  const uav::Pose X_BL = uav::inverse(X_LB);
+  body.mass_kg = all->MassMatrix().Mass();
+  body.inertia_kg_m2 = {moment(0, 0), moment(1, 1), moment(2, 2)};
+  body.X_LI = {};
+  body.X_ML = body.X_ML * X_LB;
+  for (Visual& visual : body.visuals) visual.X_LV = X_BL * visual.X_LV;
+  for (Collision& collision : body.collisions) collision.X_LC = X_BL * collision.X_LC;
 }
 
 void warn_of_moving_joints(const SdfSource& source, const sdf::Model& model, const Uav& uav,
-                           const WarningSink& warn) {
+                           const std::set<std::string>& of_rotors, const WarningSink& warn) {
   for (std::uint64_t i = 0; i < model.JointCount(); ++i) {
     const sdf::Joint& joint = *model.JointByIndex(i);
-    if (joint.Type() == sdf::JointType::FIXED ||
+    if (joint.Type() == sdf::JointType::FIXED || of_rotors.contains(joint.Name()) ||
         std::ranges::find(uav.joints, joint.Name(), &uav::Joint::name) != uav.joints.end())
       continue;
     // What its link does to the flight, the warning of the link says.
@@ -58,9 +113,11 @@ void add_sensors(const SdfSource& source, const sdf::Link& link, const uav::Pose
 }
 
 /// Visuals, collisions and sensors of a link that hangs on the body, behind so many joints; drawn
-/// as if these were at 0. Its mass is not added: the body's inertia is that of the whole airframe.
+/// as if these were at 0.
+/// @param is_weighed the body's mass contains it; else the body's inertia is, as it is written,
+/// that of the whole airframe
 void merge_link(const SdfSource& source, const sdf::Link& part, const uav::Pose& X_BM,
-                std::size_t joints, const WarningSink& warn, Uav& uav) {
+                std::size_t joints, bool is_weighed, const WarningSink& warn, Uav& uav) {
   Link link = read_link(source, part, warn);
   const uav::Pose X_BL = X_BM * link.X_ML;
   for (Visual& visual : link.visuals) {
@@ -77,7 +134,7 @@ void merge_link(const SdfSource& source, const sdf::Link& part, const uav::Pose&
   // The airframe's mass is that of all links: only a payload that the body does not include flies
   // differently. A link without a mass has SDF's, which nobody weighed.
   const sdf::ElementPtr inertial = part.Element()->FindElement("inertial");
-  if (!inertial) return;
+  if (!inertial || is_weighed) return;
   const bool is_heavy =
       inertial->HasElement("mass") && link.mass_kg > kLightPart * uav.airframe.mass_kg;
   warn_at(source, part.Element(), Effect(Consequence::kBehavesDifferent, is_heavy),
@@ -93,7 +150,7 @@ void add_links(const SdfSource& source, const sdf::Model& model, const sdf::Link
     const sdf::Link& link = *model.LinkByIndex(i);
     if (link.Name() == body.Name()) continue;
     if (const auto behind = joints.behind.find(link.Name()); behind != joints.behind.end()) {
-      merge_link(source, link, X_BM, behind->second, warn, uav);
+      merge_link(source, link, X_BM, behind->second, false, warn, uav);
     } else {
       const bool acts = link.SensorCount() > 0 || link.CollisionCount() > 0;
       warn_at(source, link.Element(), Effect(Consequence::kMissing, acts),
@@ -124,16 +181,30 @@ Uav read_uav(const SdfSource& source, double gravity_m_s2, const WarningSink& wa
                 "has no <model>; a UAV's file must have exactly one")
         .about("<model>");
   }
-  const sdf::Link& body = find_body_link(source, *model);
+  std::vector<Part> parts;
+  add_parts(source, *model, "", {}, parts);
+  const Part& body = find_body(source, *model, parts);
+  // Who writes <tether:multirotor> says what the whole weighs; else each link weighs its own.
+  const bool is_welded = !model->Element()->HasElement("tether:multirotor");
 
   Uav uav;
-  uav.body = read_link(source, body, warn);
-  uav.airframe = read_airframe(source, model->Element(), uav.body, gravity_m_s2);
+  uav.body = read_link(source, *body.link, warn);
+  uav.body.X_ML = body.X_MN * uav.body.X_ML;
+  const uav::Pose X_ML = uav.body.X_ML;
+  if (is_welded) weld(source, *model, parts, warn, uav.body);
+  const std::set<std::string> of_rotors = read_airframe(source, *model, parts, gravity_m_s2, uav);
   uav.battery = read_battery(source, model->Element());
-  add_sensors(source, body, {}, 0, warn, uav);
-  add_links(source, *model, body, warn, uav);
+  const uav::Pose X_BM = uav::inverse(uav.body.X_ML);
+  add_sensors(source, *body.link, X_BM * X_ML, 0, warn, uav);
+  if (is_welded) {
+    for (const Part& part : parts)
+      if (part.link != body.link)
+        merge_link(source, *part.link, X_BM * part.X_MN, 0, true, warn, uav);
+  } else {
+    add_links(source, *model, *body.link, warn, uav);
+  }
   add_odometry(source, model->Element(), uav);
-  warn_of_moving_joints(source, *model, uav, warn);
+  warn_of_moving_joints(source, *model, uav, of_rotors, warn);
   check_sensor_names(source, model->Element(), uav);
   return uav;
 }

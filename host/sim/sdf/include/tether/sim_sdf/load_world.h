@@ -10,8 +10,9 @@ namespace tether::sim {
 /// `request.options` allow to mend or to leave out.
 ///
 /// Nested models become separate models named "outer::inner". A UAV's body is its link
-/// "base_link", else its first one; links fixed to it are merged into it. Its airframe is its
-/// <tether:multirotor> (docs/guide/your-own-uav.md); what is missing there of drag, motors and
+/// "base_link", else its first one. Its airframe is its <tether:multirotor>, and links fixed to the
+/// body are merged into it; else it is what the plugins of its motors say, and all links are one
+/// body with the mass of all (docs/guide/your-own-uav.md). What is missing of drag, motors and
 /// limits is as of models/hummingbird/model.sdf.
 ///
 /// @throws Error(kBadFile) with file, line and element for input that cannot be used: missing file,
@@ -19,11 +20,16 @@ namespace tether::sim {
 ///   impossible values (negative mass or size, lengths and positions beyond 1e5 m, more than 1e6
 ///   kg, more than `kMaxMovingLinks`, zero-size image, gravity that does not point down, a step
 ///   outside 10 µs to 20 ms), two UAVs of one name, an anchor that is not a model with one
-///   untextured box, cylinder or sphere, a UAV model without <tether:multirotor>, with two sensors
-///   of one name, a centre of mass off its origin, or less thrust than weight. Error(kSetup) if
-///   there is no room in the folder of temporary files.
+///   untextured box, cylinder or sphere, a UAV model without rotors that are known, with two
+///   sensors of one name, a centre of mass off its origin, or less thrust than weight.
+///   Error(kSetup) if there is no room in the folder of temporary files.
 ///
 /// Not thread-safe: std::cerr and libsdformat's console are silenced while this runs.
 World load_world(const WorldRequest& request, const WarningSink& warn);
+
+/// The UAV of a model's file, without a name and a place, as in a world with such gravity. Errors
+/// and thread safety as of `load_world`.
+Uav load_uav(const std::filesystem::path& model, const WorldOptions& options, double gravity_m_s2,
+             const WarningSink& warn);
 
 }  // namespace tether::sim
