@@ -73,7 +73,8 @@ foreach(program component IN ZIP_LISTS programs components_of_programs)
     add_custom_command(OUTPUT "${page}${packed}" DEPENDS "${source}" ${program}
       COMMAND ${program} --manual-page "${source}" > "${page}" ${pack} "${page}")
     list(APPEND pages "${page}${packed}")
-    install(FILES "${page}${packed}" DESTINATION "${CMAKE_INSTALL_MANDIR}/man1" COMPONENT ${component})
+    # Who builds some programs only, can install them without their pages.
+    install(FILES "${page}${packed}" DESTINATION "${CMAKE_INSTALL_MANDIR}/man1" COMPONENT ${component} OPTIONAL)
   endif()
 endforeach()
 add_custom_target(tether_manual_pages ALL DEPENDS ${pages})

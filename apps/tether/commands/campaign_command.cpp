@@ -178,6 +178,15 @@ std::string how_to_continue(const CampaignOptions& options, const std::filesyste
                      os::shell_word(options.campaign.string()), os::shell_word(out.string()), part);
 }
 
+/// Whether a trial failed, or says nothing because of a doubt: in this part or in earlier ones.
+bool has_failures(const campaign::CampaignResults& results) {
+  for (const campaign::ScenarioResults& scenario : results.scenarios)
+    for (const campaign::ConditionResults& condition : scenario.conditions)
+      for (const campaign::TrialResult& trial : condition.trials)
+        if (exit_code(trial) == exit_code(campaign::Outcome::kFailed)) return true;
+  return false;
+}
+
 int run_trials(const CampaignOptions& options, const std::stop_token& stop) {
   const scenario::Campaign campaign = load(options);
   const auto engine = engine_of(options.engine);
@@ -224,7 +233,7 @@ int run_trials(const CampaignOptions& options, const std::stop_token& stop) {
         options.shard, counted(outcome.ran, "trial"), out.string());
   else
     print_campaign_summary(results, out);
-  return outcome.failed > 0 ? exit_code(ErrorCode::kSetup) : 0;
+  return has_failures(results) ? exit_code(ErrorCode::kSetup) : 0;
 }
 
 /// Runs many trials: scenarios x conditions x seeds.
@@ -262,15 +271,19 @@ Options campaign_rows(CampaignOptions& o) {
 }  // namespace
 
 Command campaign_command() {
-  return make_command("campaign", "Run the trials of a campaign: scenarios x conditions x seeds",
-                      campaign_rows, R"(Examples:
+  return make_command(
+      "campaign", "Run the trials of a campaign: scenarios x conditions x seeds", campaign_rows,
+      R"(Exit codes: 0, also if trials miss their goals; 2, wrong use or a bad file; 3, a trial failed or
+has no answer, or the campaign was interrupted.
+
+Examples:
   tether campaign face_anchor --out out/campaign
   tether campaign face_anchor --out out/campaign --resume
   tether campaign face_anchor --out /shared/campaign --engine slurm --engine-option "options=--time=2:00:00"
   tether campaign face_anchor --out part3 --shard 3/8
   tether campaign --collect part1 part2 part3 --out all
   tether campaign face_anchor --simulator gazebo --out out/campaign_gazebo)",
-                      run_campaign);
+      run_campaign);
 }
 
 }  // namespace tether::app

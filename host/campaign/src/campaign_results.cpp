@@ -1,5 +1,7 @@
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include <tether/campaign/campaign_results.h>
 #include <tether/campaign/copies.h>
 
@@ -16,7 +18,13 @@ ConditionResults read_condition(const std::filesystem::path& folder,
     if (!std::filesystem::exists(trial / kResultFile, ignored)) continue;
     try {
       TrialResult result = read_result(trial);
-      if (result.end != kEndInterrupted) results.trials.push_back(std::move(result));
+      // A folder that was moved here is no flight of this condition.
+      if (result.condition != condition || result.seed != seed)
+        damaged.push_back(fmt::format("{}: is of condition \"{}\", seed {}; it is not counted",
+                                      (trial / kResultFile).string(), result.condition,
+                                      result.seed));
+      else if (result.end != kEndInterrupted)
+        results.trials.push_back(std::move(result));
     } catch (const Error& error) {
       damaged.emplace_back(error.what());
     }

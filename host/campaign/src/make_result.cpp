@@ -46,7 +46,8 @@ TrialResult result_of(const scenario::Scenario& scenario, const scenario::Condit
   return result;
 }
 
-/// A program that says that it has flown by its flight controller: whether it can have done so.
+/// A program with a flight controller: whether it did anything and, if it says that it has flown,
+/// whether it can have done so.
 /// Doubts go to `warnings`.
 void check_companion(const record::Record& record, SutResult& sut, std::vector<Warning>& warnings) {
   constexpr double kAway_m = 0.2;
@@ -57,14 +58,20 @@ void check_companion(const record::Record& record, SutResult& sut, std::vector<W
            !m.name.empty();
   };
   const auto is_call = [&](const auto& logged) {
-    return logged.message.uav == sut.uav && logged.message.kind != record::kFinish;
+    return logged.message.uav == sut.uav && logged.message.kind != record::kFinish &&
+           logged.message.kind != record::kSleep;
+  };
+  const auto doubt = [&](const std::string& what) {
+    warnings.push_back({Consequence::kDoubtful, {}, "UAV '" + sut.uav + "'", what});
   };
   const bool has_sent = std::ranges::any_of(record.autopilot, is_sent);
   if (!has_sent && std::ranges::none_of(record.interactions, is_call)) {
+    doubt("has a program that did nothing with it: no sensor was read, and nothing sent");
+    if (sut.reached_goal) sut.outcome = "it did nothing with its UAV";
     sut.reached_goal = false;
-    sut.outcome = "it did nothing with its UAV";
     return;
   }
+  if (!sut.reached_goal) return;
   const record::GroundTruth *first = nullptr, *last = nullptr;
   bool has_moved = false, has_turned = false;
   for (const auto& logged : record.ground_truth) {
@@ -79,9 +86,6 @@ void check_companion(const record::Record& record, SutResult& sut, std::vector<W
                                              std::begin(first->q_WB), 0.0);  // of half the angle
     has_turned |= std::abs(cosine) < kHardlyTurned;
   }
-  const auto doubt = [&](const std::string& what) {
-    warnings.push_back({Consequence::kDoubtful, {}, "UAV '" + sut.uav + "'", what});
-  };
   if (!has_sent) return doubt("has a flight controller to which its program sent no message");
   const bool began_in_air = first != nullptr && first->clearance_m && *first->clearance_m > kAway_m;
   if (!has_moved && !(began_in_air && has_turned))
@@ -111,7 +115,7 @@ std::vector<SutResult> sut_results(const record::Record& record,
       sut.outcome = end.outcome;
       sut.details = end.details;
     }
-    if (info.controller && sut.reached_goal) check_companion(record, sut, warnings);
+    if (info.controller) check_companion(record, sut, warnings);
     suts.push_back(std::move(sut));
   }
   return suts;

@@ -159,6 +159,9 @@ std::string sentence_of(const Advice& advice, const Verdict& verdict) {
                              advice.subject);
         case MissReason::Evidence::kKnownCause:
           return "Fix this, then fly again.";
+        case MissReason::Evidence::kPossibleCause:
+          return "If that was not meant, fix it and fly again. Only then ask how fast the computer "
+                 "has to be.";
         default:
           return "Look for the reason in the program, the scenario and its limits.";
       }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <functional>
 #include <limits>
+#include <map>
 #include <vector>
 
 #include <fmt/format.h>
@@ -14,6 +15,7 @@
 #include <tether/base/text_table.h>
 #include <tether/campaign/copies.h>
 #include <tether/campaign/statistics.h>
+#include <tether/report/size_report.h>
 
 // Speed is the reason of a missed goal only where the flights show it: a condition that differs in
 // speed only is faster and reaches the goal, or computing alone takes longer than a limit on the
@@ -31,6 +33,7 @@ constexpr double kMuchFaster = 10.0;
 constexpr double kHardlyComputes = 0.25;
 constexpr SimTime kBeforeAnyProgram{std::chrono::milliseconds(50)};
 constexpr double kEmpty = 0.01;  // share of the battery's capacity
+constexpr double kClearlyLess = 0.9;
 
 struct Compared {
   ConditionVerdict* verdict;
@@ -162,9 +165,43 @@ bool reaches_more_often(const ConditionVerdict& a, const ConditionVerdict& b,
 
 /// The first limit that `missed` does not meet and the other one always does; empty: there is none.
 std::string met_by(const ConditionVerdict& other, const ConditionVerdict& missed) {
-  for (const auto& [limit, count] : missed.missed)
-    if (std::ranges::find(other.missed, limit, &MissedLimits::value_type::first) ==
-        other.missed.end())
+  for (const MissedLimit& one : missed.missed)
+    if (std::ranges::find(other.missed, one.limit, &MissedLimit::limit) == other.missed.end())
+      return one.limit;
+  return "";
+}
+
+/// How far flights are beyond a limit that all of them miss, in shares of it.
+struct Beyond {
+  double least = std::numeric_limits<double>::infinity(), most = 0.0;
+};
+std::map<std::string, Beyond> beyond_limits(const Compared& one) {
+  std::map<std::string, Beyond> limits;
+  std::map<std::string, std::size_t> flights;
+  const auto add = [&](const std::string& name, std::optional<double> margin) {
+    if (!margin || *margin >= 0.0) return;
+    Beyond& beyond = limits[name];
+    beyond = {std::min(beyond.least, -*margin), std::max(beyond.most, -*margin)};
+    ++flights[name];
+  };
+  for (const campaign::TrialResult* flight : one.flights) {
+    for (const campaign::MetricValue& metric : flight->metrics)
+      add(in_a_sentence(metric.label), margin_of(metric));
+    for (const judge::ClauseVerdict& clause : flight->clauses)
+      add(fmt::format("“{}”", clause.name), margin_of(clause));
+  }
+  std::erase_if(limits,
+                [&](const auto& limit) { return flights[limit.first] < one.flights.size(); });
+  return limits;
+}
+
+/// A limit that both miss, but each flight of the faster one by clearly less than each of the other
+/// one; empty: there is none.
+std::string nearer_to(const Compared& faster, const Compared& missed) {
+  const auto far = beyond_limits(missed);
+  for (const auto& [limit, near] : beyond_limits(faster))
+    if (const auto same = far.find(limit);
+        same != far.end() && near.most < kClearlyLess * same->second.least)
       return limit;
   return "";
 }
@@ -237,7 +274,7 @@ std::string known_cause(const campaign::TrialResult& flight, const std::optional
       return fmt::format("the battery of {} is at {:.2g} % at the start", energy.uav,
                          100.0 * energy.charge_from);
   for (const judge::ClauseVerdict& clause : flight.clauses)
-    if (!clause.met && clause.margin && clause.decided_at &&
+    if (!clause.met && clause.margin && clause.decided_at && !clause.least_without_computing &&
         *clause.decided_at <= kBeforeAnyProgram)
       return fmt::format("“{}” is missed at ST {:.3f} s, before a program can act", clause.name,
                          to_seconds(*clause.decided_at));
@@ -364,6 +401,9 @@ MissReason reason_of(const Compared& missed, const std::vector<Compared>& all,
       return compared(Evidence::kFasterUndecided, *other, missed,
                       "misses it, too, but meets " + limit);
     if (is_instant(*other)) return compared(Evidence::kInstantMissesToo, *other, missed);
+    if (const std::string limit = nearer_to(*other, missed); !limit.empty())
+      return compared(Evidence::kFasterUndecided, *other, missed,
+                      "misses it, too, but by less: " + limit);
     if (other->pace()->keeps_up() && is_much_faster(*other, missed))
       return compared(Evidence::kFasterMissesToo, *other, missed);
   }

@@ -213,7 +213,7 @@ std::string undecided_text(const ConditionVerdict& condition) {
     return fmt::format(" The flights are of different builds of {}: fly all of them again.",
                        condition.mixed_build);
   if (is_within_spread(condition))
-    return fmt::format(" The closest limit ({}, {}) is within the spread of the times.",
+    return fmt::format(" The closest limit ({}, {}) is within the spread of the machine's times.",
                        in_a_sentence(condition.tightest->first),
                        distance_text(condition.tightest->second));
   if (condition.failed > 0) return " How often those that failed would reach it is not known.";
@@ -399,12 +399,14 @@ std::string name(const ConditionVerdict& condition) {
 
 std::string missed_text(const MissedLimits& missed, bool of_one) {
   std::vector<std::string> parts;
-  for (const auto& [limit, count] : missed) {
+  for (const auto& [limit, flights, how] : missed) {
     if (parts.size() == kMostMissed) {
       parts.push_back(fmt::format("{} more", missed.size() - kMostMissed));
       break;
     }
-    parts.push_back(of_one ? limit : fmt::format("{} ({})", limit, counted(count, "flight")));
+    std::string part = limit + (how.empty() ? "" : ": " + how);
+    if (!of_one) part += fmt::format(" ({})", counted(flights, "flight"));
+    parts.push_back(std::move(part));
   }
   return joined_with_and(parts);
 }

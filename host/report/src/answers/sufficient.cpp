@@ -17,6 +17,19 @@ bool is_factor(const campaign::Setting& setting) {
   return setting.key == "cpu_factor" || setting.key == "condition.cpu_factor";
 }
 
+bool is_of_speed(const campaign::Setting& setting) {
+  return is_factor(setting) || setting.key == "computing_ms" ||
+         setting.key == "condition.computing_ms";
+}
+
+std::string settings_without(const Verdict& point, bool (*is_left_out)(const campaign::Setting&)) {
+  std::string text;
+  for (const campaign::Setting& setting : point.settings)
+    if (!is_left_out(setting))
+      text += fmt::format("{}{} = {}", text.empty() ? " with " : ", ", setting.key, setting.value);
+  return text;
+}
+
 /// One flight at each factor shows that flight only, and a world without its wind less.
 std::optional<Answer> sufficient_factor(const std::string& what, const ByFactor& flown) {
   const auto next = std::ranges::find_if(
@@ -47,11 +60,11 @@ bool is_sufficient(Ruling ruling) {
 }
 
 std::string other_settings(const Verdict& point) {
-  std::string text;
-  for (const campaign::Setting& setting : point.settings)
-    if (!is_factor(setting))
-      text += fmt::format("{}{} = {}", text.empty() ? " with " : ", ", setting.key, setting.value);
-  return text;
+  return settings_without(point, is_factor);
+}
+
+std::string settings_beside_speed(const Verdict& point) {
+  return settings_without(point, is_of_speed);
 }
 
 std::vector<Answer> sufficient_factors(const std::vector<Verdict>& points) {

@@ -14,6 +14,9 @@ bool is_sufficient(Ruling ruling);
 /// What a point of a sweep has beside its cpu_factor: " with rate_hz = 10"; empty: nothing.
 std::string other_settings(const Verdict& point);
 
+/// The same of what beside the speed of the computer: its points are compared as conditions are.
+std::string settings_beside_speed(const Verdict& point);
+
 /// Of a sweep over cpu_factor: for each condition and combination of the other values, the largest
 /// factor up to which it is fast enough. @pre the points are of one scenario; not empty.
 std::vector<Answer> sufficient_factors(const std::vector<Verdict>& points);

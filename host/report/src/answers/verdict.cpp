@@ -49,24 +49,27 @@ std::string limited(const campaign::MetricValue& metric) {
 }
 
 /// What of the flight missed its limit. Empty: at most metrics without a value.
-std::vector<std::string> missed_in(const campaign::TrialResult& trial) {
-  std::vector<std::string> missed;
+MissedLimits missed_in(const campaign::TrialResult& trial) {
+  MissedLimits missed;
+  const auto add = [&](std::string limit, const std::string& how = "") {
+    missed.push_back({std::move(limit), 1, how});
+  };
   // A UAV without a battery falls.
   if (trial.end == campaign::kEndBatteryEmpty ||
       std::ranges::any_of(trial.energy, &campaign::UavEnergy::is_empty))
-    missed.emplace_back("“battery not empty”");
-  if (has_crash(trial)) missed.emplace_back("“no crash”");
-  if (trial.end == campaign::kEndTimeLimit) missed.emplace_back("the time limit");
+    add("“battery not empty”");
+  if (has_crash(trial)) add("“no crash”");
+  if (trial.end == campaign::kEndTimeLimit) add("the time limit");
   for (const judge::ClauseVerdict& clause : trial.clauses)
-    if (!clause.met) missed.push_back(fmt::format("“{}”", clause.name));
+    if (!clause.met) add(fmt::format("“{}”", clause.name));
   for (const campaign::MetricValue& metric : trial.metrics)
-    if (metric.value && !metric.is_met()) missed.push_back(limited(metric));
-  const auto has_missed = [](const campaign::SutResult& sut) { return !sut.reached_goal; };
-  if (const auto sut = std::ranges::find_if(trial.suts, has_missed);
-      missed.empty() && sut != trial.suts.end())
-    missed.push_back((trial.suts.size() > 1 ? fmt::format("the own goal of {}'s program", sut->uav)
-                                            : "the program's own goal") +
-                     (sut->outcome.empty() ? "" : ": " + sut->outcome));
+    if (metric.value && !metric.is_met()) add(limited(metric));
+  if (!missed.empty()) return missed;
+  for (const campaign::SutResult& sut : trial.suts)
+    if (!sut.reached_goal)
+      add(trial.suts.size() > 1 ? fmt::format("the own goal of {}'s program", sut.uav)
+                                : "the program's own goal",
+          sut.outcome);
   return missed;
 }
 
@@ -187,8 +190,11 @@ std::string mixed_build(const std::vector<const campaign::TrialResult*>& flights
 }  // namespace
 
 bool is_within_spread(const ConditionVerdict& verdict, const FlightsInDoubt& doubt) {
-  return !doubt.largest.is_of_unseen_time() && verdict.tightest &&
-         std::abs(verdict.tightest->second) < doubt.largest.amount;
+  if (doubt.largest.is_of_unseen_time() || !verdict.tightest) return false;
+  // What took t can take (1 + amount) t, or the other way round: 90 % more of a fifth of a limit is
+  // within it.
+  const double margin = verdict.tightest->second, amount = doubt.largest.amount;
+  return margin >= 0.0 ? (1.0 - margin) * (1.0 + amount) > 1.0 : -margin < amount;
 }
 
 bool is_within_spread(const ConditionVerdict& verdict) {
@@ -276,6 +282,8 @@ std::vector<Advice> advice_on(const ConditionVerdict& lead) {
         advice.push_back({Kind::kUnstretch});
       else if (lead.miss->evidence == MissReason::Evidence::kBothSidesReach)
         advice.push_back({Kind::kFindReason, lead.miss->condition});
+      else if (lead.miss->evidence == MissReason::Evidence::kPossibleCause)
+        advice.push_back({Kind::kFindReason});
       else if (lead.miss->reached > 0)
         advice.push_back({Kind::kCompareMore, lead.condition});
       else
@@ -369,7 +377,7 @@ std::vector<Verdict> rule(std::vector<Verdict> verdicts,
     for (std::size_t j = 0; j < verdict.conditions.size(); ++j) {
       ConditionVerdict& condition = verdict.conditions[j];
       const std::string with = verdict.point.empty() ? "" : " with " + verdict.point;
-      comparable[{verdict.scenario, other_settings(verdict)}].push_back(
+      comparable[{verdict.scenario, settings_beside_speed(verdict)}].push_back(
           {&condition, &scenarios[i]->conditions[j], condition.condition + with});
     }
   }
@@ -405,18 +413,18 @@ MissedLimits missed_limits(std::span<const campaign::TrialResult* const> trials)
   MissedLimits all;
   for (const campaign::TrialResult* trial : trials) {
     if (trial->outcome != campaign::Outcome::kGoalMissed) continue;
-    std::vector<std::string> limits = missed_in(*trial);
+    MissedLimits limits = missed_in(*trial);
     if (const campaign::MetricValue* const metric = missed_for_no_value(*trial))
-      limits = {fmt::format("{} (no value: {})", limited(*metric), metric->missing_because)};
-    for (const std::string& limit : limits) {
-      const auto known = std::ranges::find(all, limit, &MissedLimits::value_type::first);
+      limits = {{fmt::format("{} (no value: {})", limited(*metric), metric->missing_because), 1}};
+    for (MissedLimit& one : limits) {
+      const auto known = std::ranges::find(all, one.limit, &MissedLimit::limit);
       if (known == all.end())
-        all.emplace_back(limit, 1);
+        all.push_back(std::move(one));
       else
-        ++known->second;
+        ++known->flights;
     }
   }
-  std::ranges::stable_sort(all, std::greater<>{}, &MissedLimits::value_type::second);
+  std::ranges::stable_sort(all, std::greater<>{}, &MissedLimit::flights);
   return all;
 }
 

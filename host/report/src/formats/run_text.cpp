@@ -103,9 +103,15 @@ void add_circumstances(Rows& rows, const campaign::TrialResult& result) {
     if (warning.consequence == Consequence::kMissing) rows.emplace_back("missing", warning.subject);
 }
 
-void add_record(Rows& rows, const std::filesystem::path& folder) {
+void add_files(Rows& rows, const campaign::TrialResult& result,
+               const std::filesystem::path& folder) {
   const std::filesystem::path record = folder / "record.mcap";
   if (std::filesystem::exists(record)) rows.emplace_back("record", record.string());
+  if (result.outcome == campaign::Outcome::kGoalReached) return;
+  // What a program printed often says why.
+  for (const campaign::SutResult& sut : result.suts)
+    if (const auto log = folder / ("sut-" + sut.uav + ".log"); std::filesystem::exists(log))
+      rows.emplace_back("output", log.string());
 }
 
 Rows rows_of(const campaign::TrialResult& result, const std::filesystem::path& folder) {
@@ -122,7 +128,7 @@ Rows rows_of(const campaign::TrialResult& result, const std::filesystem::path& f
   add_circumstances(rows, result);
   if (result.audit) rows.emplace_back("audit", result.audit->summary);
   for (const std::string& note : result.this_run.notes) rows.emplace_back("note", note);
-  add_record(rows, folder);
+  add_files(rows, result, folder);
   return rows;
 }
 
@@ -133,7 +139,7 @@ Rows rows_of_failure(const campaign::TrialResult& result, const std::filesystem:
                       fmt::format("at ST {:.3f} s, after {} interactions",
                                   to_seconds(result.sync.st_at_end), result.sync.interactions));
   for (const std::string& note : result.this_run.notes) rows.emplace_back("note", note);
-  add_record(rows, folder);
+  add_files(rows, result, folder);
   return rows;
 }
 

@@ -11,6 +11,7 @@
 namespace tether::report {
 namespace {
 
+constexpr double kMostWidth_px = 560.0;  // alone on a page
 constexpr double kPictureWidth = 420.0, kPictureRow = 46.0, kPictureTop = 34.0;
 constexpr std::size_t kMostSigns = 200;  // more would not be seen
 
@@ -99,9 +100,9 @@ std::string drawing_of(const std::string& title, const std::string& words, const
                        double height) {
   return fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" viewBox=\"0 0 {:.0f} {:.0f}\" "
-      "aria-label=\"{}\" font-family=\"sans-serif\">\n{}{}</svg>\n",
-      kPictureWidth, height, escape_markup(title + words), text_svg(0.0, 15.0, title, "start", 13),
-      body);
+      "style=\"max-width:{:.0f}px\" aria-label=\"{}\" font-family=\"sans-serif\">\n{}{}</svg>\n",
+      kPictureWidth, height, kMostWidth_px, escape_markup(title + words),
+      text_svg(0.0, 15.0, title, "start", 13), body);
 }
 
 }  // namespace

@@ -42,11 +42,11 @@ TEST(Verdict, OfAProgramThatWaitedALittleHoldsIfThatCannotChangeIt) {
   doubts = {{campaign::Doubt::Kind::kSlightWait, "uav1", 0.03}};
   EXPECT_EQ(ruling_of(scenario), Ruling::kFastEnoughSoFar);
   EXPECT_THAT(answers_of({verdict_of(scenario)})[0].rest, testing::Not(HasSubstr("waited")));
-  doubts[0].amount = 0.21;
+  doubts[0].amount = 0.26;
   EXPECT_EQ(ruling_of(scenario), Ruling::kUndecided);
   EXPECT_THAT(answers_of({verdict_of(scenario)})[0].rest,
               testing::AllOf(HasSubstr("within the spread"),
-                             HasSubstr("waited 21.0 % of its time on something that Tether")));
+                             HasSubstr("waited 26.0 % of its time on something that Tether")));
   EXPECT_EQ(verdict_of(scenario).advice[0].kind, Advice::Kind::kShowWaits);
   doubts = {{campaign::Doubt::Kind::kSlightWait, "uav1", 0.03},
             {campaign::Doubt::Kind::kBusyMachine, "", 0.3}};

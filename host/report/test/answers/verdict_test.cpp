@@ -117,8 +117,8 @@ TEST(Verdict, CountsEachLimitThatWasMissed) {
   EXPECT_EQ(condition.failed, 1u);
   EXPECT_EQ(condition.crashed, 1u);
   EXPECT_THAT(condition.missed,
-              ElementsAre(std::pair("time required ≤ 5 s", 4u), std::pair("“face”", 1u),
-                          std::pair("the time limit", 1u), std::pair("“no crash”", 1u)));
+              ElementsAre(MissedLimit{"time required ≤ 5 s", 4}, MissedLimit{"“face”", 1},
+                          MissedLimit{"the time limit", 1}, MissedLimit{"“no crash”", 1}));
   EXPECT_EQ(condition.closest->first, "Time required");
   EXPECT_NEAR(condition.closest->second, -0.2, 1e-12);
   trials[0].clauses = {
@@ -132,7 +132,7 @@ TEST(Verdict, KnowsAFlightThatMissedOnlyForWantOfAValue) {
   trial.metrics[0].value.reset();
   trial.metrics[0].missing_because = "no estimates";
   EXPECT_EQ(missed_without_value(trial), "time required has no value: no estimates");
-  EXPECT_EQ(missed_limits(std::vector<const TrialResult*>{&trial})[0].first,
+  EXPECT_EQ(missed_limits(std::vector<const TrialResult*>{&trial})[0].limit,
             "time required ≤ 5 s (no value: no estimates)");
   campaign::ScenarioResults scenario = flights(0, 1);
   scenario.conditions[0].trials = {trial};

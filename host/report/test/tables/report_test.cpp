@@ -197,5 +197,12 @@ TEST_F(Report, ForProgramsHasFullPrecisionAndNotes) {
       "scenario,condition,seed,outcome,metric,unit,value,reason,notes\r\n"));
 }
 
+TEST_F(Report, CountsNoFlightOfAnotherCondition) {
+  write_result(folder_of("target", 1), trial("host", 1, 0, 2.5));
+  EXPECT_EQ(results().find_condition("target")->trials.size(), 2u);
+  ASSERT_EQ(all().damaged.size(), 1u);
+  EXPECT_THAT(all().damaged[0], testing::HasSubstr("is of condition \"host\", seed 1"));
+}
+
 }  // namespace
 }  // namespace tether::report

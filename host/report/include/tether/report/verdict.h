@@ -43,8 +43,15 @@ enum class Ruling {
 /// "not fast enough", …
 std::string_view name(Ruling ruling);
 
-/// Limits, deadlines and goals, and how many flights missed each; the most frequent first.
-using MissedLimits = std::vector<std::pair<std::string, std::size_t>>;
+/// A limit, a deadline or a goal that flights missed.
+struct MissedLimit {
+  std::string limit;        ///< "time required ≤ 5 s", "the own goal of uav1's program"
+  std::size_t flights = 0;  ///< that missed it
+  std::string how{};        ///< of a program's goal, what the first of them said; may be empty
+  friend bool operator==(const MissedLimit&, const MissedLimit&) = default;
+};
+/// The most frequent one first.
+using MissedLimits = std::vector<MissedLimit>;
 MissedLimits missed_limits(std::span<const campaign::TrialResult* const> trials);
 /// If the flight missed nothing but a limit of a metric without a value: why it has none. Else
 /// empty.

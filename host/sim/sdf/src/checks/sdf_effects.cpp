@@ -148,7 +148,9 @@ Effect effect_without(const sdf::ElementPtr& element, SdfPurpose purpose) {
   const bool is_unknown = name.starts_with("tether:") ? name != "tether:multirotor"
                                                       : name.find(':') == std::string::npos &&
                                                             !parent->HasElementDescription(name);
-  if (is_unknown) return can_change(Consequence::kNoEffect);
+  if (is_unknown)
+    return can_change(name.starts_with("tether:") ? Consequence::kNoEffect
+                                                  : Consequence::kBehavesDifferent);
   Effect effect = Consequence::kNoEffect;
   if (const auto of_element = kEffectOfElement.find(name); of_element != kEffectOfElement.end())
     effect = of_element->second;
