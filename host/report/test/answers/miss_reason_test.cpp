@@ -1,4 +1,4 @@
-#include "sample_results.h"
+#include "answers/miss_reasons.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,59 +12,6 @@ using Evidence = MissReason::Evidence;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::StartsWith;
-
-/// Flights of one UAV under conditions that differ in what the tests set.
-class MissReasons : public testing::Test {
- protected:
-  /// @return the index of the condition.
-  std::size_t add(const std::string& name, std::size_t reached, std::size_t missed, Pace pace) {
-    std::vector<double> times_s(reached, 4.0);
-    times_s.resize(reached + missed, 6.0);
-    scenario_.conditions.push_back(sample_results({{name, times_s}}).conditions[0]);
-    for (campaign::TrialResult& trial : scenario_.conditions.back().trials) {
-      trial.policy = "conservative_barrier";
-      trial.metrics[0].max = 5.0;
-      trial.profiles = {"paper_streaming"};
-      trial.versions["simulator"] = "MuJoCo";
-      trial.suts = {
-          {.uav = "uav1", .sut = "s", .clock = {computer::ClockKind::kCpu}, .reached_goal = true}};
-      if (!trial.metrics[0].is_met()) trial.outcome = campaign::Outcome::kGoalMissed;
-    }
-    paces_.emplace_back(std::move(pace));
-    return paces_.size() - 1;
-  }
-  Verdict verdict() const { return verdict_of(scenario_, paces_); }
-  Ruling ruling(std::size_t condition) const { return verdict().conditions[condition].ruling; }
-  std::vector<campaign::TrialResult>& trials(std::size_t condition) {
-    return scenario_.conditions[condition].trials;
-  }
-  Speed::Program& program(std::size_t condition) { return paces_[condition]->speed.programs[0]; }
-
-  /// A program that is measured: an image costs so much.
-  static Pace measured(double image_s) {
-    Pace pace{.uav = "uav1",
-              .stages = {{.stage = "detect", .count = 40, .share = 1.0}},
-              .camera = "camera",
-              .read_hz = 30.0,
-              .offered_hz = 30.0,
-              .median_s = image_s,
-              .p95_s = image_s};
-    pace.speed.programs = {{.uav = "uav1", .clock = {computer::ClockKind::kCpu}}};
-    pace.speed.machine = "here";
-    return pace;
-  }
-  static Pace scripted(Duration computing) {
-    Pace pace = measured(to_seconds(computing));
-    pace.speed.programs = {
-        {.uav = "uav1", .clock = {computer::ClockKind::kScripted, 1.0, computing}}};
-    pace.speed.machine.clear();
-    return pace;
-  }
-  static Pace instant() { return scripted(std::chrono::microseconds(1)); }
-
-  campaign::ScenarioResults scenario_;
-  std::vector<std::optional<Pace>> paces_;
-};
 
 TEST_F(MissReasons, AreNotKnownWithoutAReference) {
   const std::size_t board = add("board", 0, 5, measured(0.2));
@@ -362,44 +309,6 @@ TEST_F(MissReasons, AreNotTheTaskThatDidNotRunIfOneBeforeItWasLate) {
   trial.clauses.pop_back();
   trial.tasks = {{"uav1", "search", {}, {}, "not_reached", ""}};
   EXPECT_EQ(ruling(0), Ruling::kGoalMissed);
-}
-
-TEST_F(MissReasons, AreSpeedBetweenPointsOfASweepOverIt) {
-  campaign::CampaignResults results;
-  for (const int computing_ms : {2, 300}) {
-    scenario_ = {};
-    paces_.clear();
-    const std::size_t reached = computing_ms == 2 ? 6 : 0;
-    add("board", reached, 6 - reached, scripted(std::chrono::milliseconds(computing_ms)));
-    for (campaign::TrialResult& trial : trials(0)) trial.pace = paces_[0];
-    scenario_.scenario = scenario_.swept_from = "turn";
-    scenario_.settings = {{"computing_ms", std::to_string(computing_ms)}};
-    results.scenarios.push_back(scenario_);
-  }
-  EXPECT_EQ(verdicts_of(results)[1].conditions[0].ruling, Ruling::kNotFastEnough);
-}
-
-// One program flies the wrong way; the other one is too slow.
-TEST_F(MissReasons, CountTheOwnGoalOfEachProgram) {
-  const std::size_t board = add("board", 0, 5, measured(0.2));
-  const std::size_t host = add("host", 0, 5, measured(0.02));
-  program(board).clock.factor = 10.0;
-  for (const std::size_t condition : {board, host})
-    for (campaign::TrialResult& trial : trials(condition)) {
-      trial.metrics.clear();
-      campaign::SutResult first, second;
-      first.uav = "uav1";
-      first.outcome = "lost";
-      second.uav = "uav2";
-      second.outcome = "late";
-      second.reached_goal = condition == host;
-      trial.suts = {first, second};
-    }
-  EXPECT_EQ(ruling(board), Ruling::kGoalMissed);
-  EXPECT_THAT(answers_of({verdict()})[0].rest,
-              testing::AllOf(HasSubstr("the own goal of uav1's program: lost (5 flights) and the "
-                                       "own goal of uav2's program: late (5 flights)"),
-                             HasSubstr("but meets the own goal of uav2's program.")));
 }
 
 TEST_F(MissReasons, AreProbablyNotSpeedIfAFasterProgramThatReadsEveryImageMissesToo) {

@@ -1,0 +1,52 @@
+#include "answers/miss_reasons.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <tether/report/verdict.h>
+
+namespace tether::report {
+namespace {
+
+using testing::HasSubstr;
+
+TEST_F(MissReasons, AreSpeedBetweenPointsOfASweepOverIt) {
+  campaign::CampaignResults results;
+  for (const int computing_ms : {2, 300}) {
+    scenario_ = {};
+    paces_.clear();
+    const std::size_t reached = computing_ms == 2 ? 6 : 0;
+    add("board", reached, 6 - reached, scripted(std::chrono::milliseconds(computing_ms)));
+    for (campaign::TrialResult& trial : trials(0)) trial.pace = paces_[0];
+    scenario_.scenario = scenario_.swept_from = "turn";
+    scenario_.settings = {{"computing_ms", std::to_string(computing_ms)}};
+    results.scenarios.push_back(scenario_);
+  }
+  EXPECT_EQ(verdicts_of(results)[1].conditions[0].ruling, Ruling::kNotFastEnough);
+}
+
+// One program flies the wrong way; the other one is too slow.
+TEST_F(MissReasons, CountTheOwnGoalOfEachProgram) {
+  const std::size_t board = add("board", 0, 5, measured(0.2));
+  const std::size_t host = add("host", 0, 5, measured(0.02));
+  program(board).clock.factor = 10.0;
+  for (const std::size_t condition : {board, host})
+    for (campaign::TrialResult& trial : trials(condition)) {
+      trial.metrics.clear();
+      campaign::SutResult first, second;
+      first.uav = "uav1";
+      first.outcome = "lost";
+      second.uav = "uav2";
+      second.outcome = "late";
+      second.reached_goal = condition == host;
+      trial.suts = {first, second};
+    }
+  EXPECT_EQ(ruling(board), Ruling::kGoalMissed);
+  EXPECT_THAT(answers_of({verdict()})[0].rest,
+              testing::AllOf(HasSubstr("the own goal of uav1's program: lost (5 flights) and the "
+                                       "own goal of uav2's program: late (5 flights)"),
+                             HasSubstr("but meets the own goal of uav2's program.")));
+}
+
+}  // namespace
+}  // namespace tether::report
