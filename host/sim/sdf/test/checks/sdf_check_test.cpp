@@ -30,7 +30,7 @@ const std::string kSphere = "<geometry><sphere><radius>1</radius></sphere></geom
 
 TEST(SdfWarning, NamesTheElement) {
   const Unrepresented cases[] = {
-      {"\n<bogus>3</bogus>", 4, "<bogus> of world 'w'", Consequence::kNoEffect, true},
+      {"\n<bogus>3</bogus>", 4, "<bogus> of world 'w'", Consequence::kBehavesDifferent, true},
       {link("\n<tether:magic/>"), 6, "<tether:magic> of link 'l'", Consequence::kNoEffect, true},
       {"<model name='m'><link name='l'/>\n<tether:multirotor/></model>", 4,
        "<tether:multirotor> of model 'm'", Consequence::kNoEffect, false},
