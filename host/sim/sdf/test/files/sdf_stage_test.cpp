@@ -117,7 +117,7 @@ TEST_F(Includes, KeepTheirLinesWhateverPrecedesThem) {
                                  "3 0 0 0</pose><bogus>a\nb</bogus>\n<bogus/></link>");
   const Loaded loaded = load({write_world(include("model://inner")), {}, {}});
   const auto bogus = [&](int line) {
-    return is_warning(Consequence::kNoEffect, inner, line, "<bogus> of link 'l'");
+    return is_warning(Consequence::kBehavesDifferent, inner, line, "<bogus> of link 'l'");
   };
   EXPECT_THAT(loaded.warnings, ElementsAre(bogus(10), bogus(12)));
 }
