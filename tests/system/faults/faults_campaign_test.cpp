@@ -38,6 +38,9 @@ class Standstill {
 const std::vector<std::string> kTrials = {"hover/host/seed-0001", "hover/host/seed-0002",
                                           "hover/host/seed-0003"};
 
+/// The exit code of a campaign whose SUT waits on what Tether does not see.
+constexpr int kUnanswered = 3;
+
 /// Three trials under a scripted clock, whose SUT pauses for a second at its end.
 class Campaign : public RunTest {
  protected:
@@ -62,7 +65,7 @@ class Campaign : public RunTest {
   }
   void expect_resumes(const std::string& first) const {
     const Output resumed = run(campaign({"--resume"}), 90s);
-    EXPECT_EQ(resumed.code, 0) << resumed.err;
+    EXPECT_EQ(resumed.code, kUnanswered) << resumed.err;
     EXPECT_EQ(result(0), first);
     expect_all_finished();
   }
@@ -115,7 +118,7 @@ TEST_F(Campaign, OutlivesATrialKilledBeforeItsResultIsKept) {
   ASSERT_TRUE(run_of_trial);
   held.tear();
   kill(*run_of_trial, SIGKILL);
-  EXPECT_EQ(process.wait(90s).code, 0) << process.err();
+  EXPECT_EQ(process.wait(90s).code, kUnanswered) << process.err();
   EXPECT_TRUE(wait_until_gone(mark_));
   expect_all_finished();
   const auto again = read_result(trial(1))["this_run"];
@@ -132,9 +135,9 @@ TEST_F(Campaign, ThatWasStoppedIsTheSameAsAnother) {
     const Standstill stopped(mark_);
     std::this_thread::sleep_for(3s);
   }
-  EXPECT_EQ(process.wait(90s).code, 0) << process.err();
+  EXPECT_EQ(process.wait(90s).code, kUnanswered) << process.err();
   expect_all_finished();
-  EXPECT_EQ(run(campaign({"--jobs", "2"}, "alone")).code, 0);
+  EXPECT_EQ(run(campaign({"--jobs", "2"}, "alone")).code, kUnanswered);
   for (std::size_t i = 0; i < kTrials.size(); ++i) expect_same_runs(trial(i), trial(i, "alone"));
 }
 
@@ -156,7 +159,7 @@ TEST_F(Campaign, KeepsOtherRunsAndCampaignsOutOfItsFolder) {
                      out_ / below);
     EXPECT_FALSE(std::filesystem::exists(out_ / "aside"));
   }
-  EXPECT_EQ(process.wait(90s).code, 0) << process.err();
+  EXPECT_EQ(process.wait(90s).code, kUnanswered) << process.err();
   expect_all_finished();
   for (std::size_t i = 0; i < kTrials.size(); ++i)
     EXPECT_EQ(read_result(trial(i))["this_run"]["attempts"], 1) << i;
