@@ -170,7 +170,7 @@ endfunction()
 # tether_add_library(<name> SOURCES ... [PUBLIC ...] [PRIVATE ...] [TESTS ...] [TEST_LIBS ...]
 #                    [TESTING_SOURCES ...] [LABELS ...] [COST <seconds>] [BUSY])
 #
-# Declares a folder of common/, target/ or host/ as target tether_<name> (alias tether::<name>):
+# Declares a folder of common/, target/ or a wing of host/ as target tether_<name> (alias tether::<name>):
 #   SOURCES         files below src/
 #   PUBLIC/PRIVATE  what it links to; own libraries as tether::<lib>
 #   TESTS           files below test/, one executable tether_<name>_test

@@ -126,7 +126,7 @@ if(NOT TETHER_TARGET_ONLY)
         "examples/node-companion:../examples/node-companion"
         "examples/own-simulator:../examples/own-simulator"
         "examples/python-face-anchor:/usr/share/doc/python3-tether/examples/python-face-anchor"
-        "host/sim/protocol/schema/:/usr/share/tether/schema/"
+        "host/external/sim/protocol/schema/:/usr/share/tether/schema/"
         "target/client/c_api/include/:/usr/include/")
       string(REGEX MATCH "^(.*):(.*)$" match "${place}")
       string(REPLACE "](../../${CMAKE_MATCH_1}" "](${CMAKE_MATCH_2}" text "${text}")

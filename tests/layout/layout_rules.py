@@ -35,8 +35,14 @@ class Source:
         return found[0] if found else "other"
 
     @functools.cached_property
+    def rooms(self):
+        """The folders below the side, down to the library's: of the host, the first one is a wing."""
+        return self.parts[1 : self.parts.index(self.role)] if self.role in ROLES and self.parts[0] in SIDES else []
+
+    @property
     def library(self):
-        return "_".join(self.parts[1 : self.parts.index(self.role)]) if self.role in ROLES and self.parts[0] in SIDES else ""
+        in_wing = self.parts[0] == "host" and len(self.rooms) > 1
+        return "_".join(self.rooms[1:] if in_wing else self.rooms)
 
     @property
     def is_product(self):
@@ -83,17 +89,25 @@ def is_standard(include):
 
 
 def read_arrows(design):
-    """{library: libraries that it may include}, from the block of folders in docs/design.md."""
-    arrows, side, library = {}, "", ""
+    """({library: libraries that it may include}, {library of the host: its wing}), from the block of folders in
+    docs/design.md."""
+    arrows, wings, side, wing, library = {}, {}, "", "", ""
     for line in re.search(r"## 4\. Layout.*?```\n(.*?)```", design, re.S)[1].splitlines():
-        if top := re.match(r"(\w+)/", line):
-            side = top[1]
+        if top := re.match(r"(\w+)/(\w*)", line):
+            side, wing, library = top[1], top[2], ""
         elif side in SIDES:
             if entry := re.match(r"  (\S+)", line):
                 library = entry[1].replace("/", "_")
+                wings |= {library: wing} if wing else {}
             if (arrow := re.search("→ (.*)", line)) and library:
                 arrows[library] = set(arrow[1].replace("/", "_").split()) - {"std"}
-    return arrows
+    return arrows, wings
+
+
+def arrows_of_wings(arrows, wings):
+    """{wing: other wings that its libraries may include}."""
+    return {wing: {wings[to] for library, its in wings.items() if its == wing for to in arrows.get(library, ())
+                   if wings.get(to, wing) != wing} for wing in set(wings.values())}
 
 
 def check_includes(sources, rule):
@@ -125,15 +139,22 @@ def check_arrows(sources, arrows):
 
 
 def check_cycles(arrows):
-    """No library may include itself through others."""
-    def reached(library):
-        found, new = set(), {library}
+    """No library, or wing, may include itself through others."""
+    def reached(room):
+        found, new = set(), {room}
         while new:
             new = {to for at in new for to in arrows.get(at, ())} - found
             found |= new
         return found
-    return [f"docs/design.md: '{library}' may include itself through others" for library in sorted(arrows)
-            if library in reached(library)]
+    return [f"docs/design.md: '{room}' may include itself through others" for room in sorted(arrows)
+            if room in reached(room)]
+
+
+def check_wings(sources, wings):
+    """Each library of the host lies in the wing that docs/design.md says."""
+    places = {(s.library, s.rooms[0]) for s in sources if s.parts[0] == "host" and s.library}
+    return [f"host/{wing}: '{library}' belongs to the wing '{wings.get(library)}' in docs/design.md"
+            for library, wing in sorted(places) if wings.get(library) != wing]
 
 
 def is_own_format(source, path):

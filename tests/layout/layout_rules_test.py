@@ -30,8 +30,9 @@ class Text(unittest.TestCase):
 
     def test_a_path_gives_library_and_role(self):
         for path, expected in {
-            "host/sim/mujoco/src/a/b.cpp": ("sim_mujoco", "src"),
-            "host/sim/include/tether/sim/world.h": ("sim", "include"),
+            "host/world/sim/mujoco/src/a/b.cpp": ("sim_mujoco", "src"),
+            "host/world/sim/include/tether/sim/world.h": ("sim", "include"),
+            "host/report/src/pages/html.cpp": ("report", "src"),
             "common/base/test/time_test.cpp": ("base", "test"),
             "common/base/testing/include/tether/base_testing/c.h": ("base", "testing"),
             "apps/tether/main.cpp": ("", "program"),
@@ -42,8 +43,9 @@ class Text(unittest.TestCase):
             self.assertEqual((source.library, source.role), expected)
 
     def test_arrows_are_read_from_the_design(self):
-        design = "## 4. Layout\n```\napps/\n  x   program\n\ncommon/   both\n  base  words → std\n  c/d   two\n      lines → base sim/sdf\ndata/  → no\n```"
-        self.assertEqual(read_arrows(design), {"base": set(), "c_d": {"base", "sim_sdf"}})
+        design = "## 4. Layout\n```\napps/\n  x   program\n\ncommon/   both\n  base  words → std\n  c/d   two\n      lines → base sim/sdf\nhost/w/   a wing\n  e/f   room → base\ndata/  → no\n```"
+        self.assertEqual(read_arrows(design),
+                         ({"base": set(), "c_d": {"base", "sim_sdf"}, "e_f": {"base"}}, {"e_f": "w"}))
 
 
 class Planted(unittest.TestCase):
@@ -61,11 +63,19 @@ class Planted(unittest.TestCase):
                     ("common/uav/src/a.cpp", "\n#include <tether/sim/world.h>\n", "a.cpp:2: 'uav' may not include 'sim'"),
                     ("common/uav/test/a_test.cpp", "#include <tether/link/a.h>\n", "'uav' may not include 'link'"),
                     ("target/client/src/a.cpp", "#include <tether/client.hpp>\n", "may not include 'client_c_api'"),
-                    ("host/novel/src/a.cpp", "#include <tether/base/time.h>\n", "has no line"),
-                    ("host/coordinator/src/a.cpp", fake, "fake"), ("apps/tether/src/a.cpp", fake, "fake"),
-                    ("host/coordinator/test/a_test.cpp", fake, None), ("apps/tether/test/a_test.cpp", fake, None))
+                    ("host/trial/novel/src/a.cpp", "#include <tether/base/time.h>\n", "has no line"),
+                    ("host/flight/coordinator/src/a.cpp", fake, "fake"), ("apps/tether/src/a.cpp", fake, "fake"),
+                    ("host/flight/coordinator/test/a_test.cpp", fake, None), ("apps/tether/test/a_test.cpp", fake, None))
         self.assertEqual(check_cycles(ARROWS), [])
         self.assertEqual(len(check_cycles(ARROWS | {"base": {"link"}})), 3)
+
+    def test_wings(self):
+        arrows, wings = {"a": {"b", "base"}, "b": {"a"}, "c": {"b"}}, {"a": "low", "b": "low", "c": "high"}
+        self.assertEqual(arrows_of_wings(arrows, wings), {"low": set(), "high": {"low"}})
+        self.assertEqual(len(check_cycles(arrows_of_wings(arrows | {"b": {"c"}}, wings))), 2)
+        self.expect(lambda sources: check_wings(sources, wings), ("host/low/a/src/x.cpp", "", None),
+                    ("host/high/a/src/x.cpp", "", "belongs to the wing 'low'"),
+                    ("common/base/src/x.cpp", "", None))
 
     def test_headers(self):
         path = "common/link/include/tether/link/a.h"
@@ -81,19 +91,19 @@ class Planted(unittest.TestCase):
         self.expect(lambda sources: check_private_headers([header, shared, *sources]),
                     ("apps/tether/a.cpp", '#include "shared/words.h"\n', None),
                     ("apps/tether/a.cpp", '#include "shared/others.h"\n', "is no file of this folder"),
-                    ("host/sync/src/a.cpp", '#include "shared/words.h"\n', "is no file of this folder"),
+                    ("host/flight/sync/src/a.cpp", '#include "shared/words.h"\n', "is no file of this folder"),
                     ("common/link/src/a.cpp", quote + '#include "link_generated.h"\n', None),
                     ("common/link/test/a_test.cpp", quote, None), ("bench/a.cpp", quote, None),
                     ("target/client/src/a.cpp", quote, "is no file of this folder"),
                     ("target/client/src/a.cpp", '#include "../../link/src/frame.h"\n', "leaves its folder"))
 
     def test_words(self):
-        sync = "host/sync/src/a.cpp"
+        sync = "host/flight/sync/src/a.cpp"
         self.expect(check_sync_is_pure, (sync, "#include <thread>\n", "<thread>"),
                     (sync, "#include <spdlog/spdlog.h>\n", "spdlog"), (sync, "steady_clock::now();\n", "steady_clock"),
                     (sync, "// no steady_clock here\n#include <vector>\n", None))
         self.expect(check_coordinator_is_neutral,
-                    ("host/coordinator/src/a.cpp", "\n make_mujoco_simulator();\n", "a.cpp:2"))
+                    ("host/flight/coordinator/src/a.cpp", "\n make_mujoco_simulator();\n", "a.cpp:2"))
         self.expect(check_randomness, ("common/uav/src/a.cpp", "std::mt19937 g;\n", "mt19937"),
                     ("common/uav/test/a_test.cpp", "std::mt19937 g(1);\n", None))
 
@@ -123,7 +133,7 @@ class Repository(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.sources, cls.texts = read_repository(ROOT)
-        cls.arrows = read_arrows(cls.texts["docs/design.md"])
+        cls.arrows, cls.wings = read_arrows(cls.texts["docs/design.md"])
 
     def test_is_read(self):
         self.assertGreater(sum(s.is_product for s in self.sources), 300)
@@ -131,6 +141,8 @@ class Repository(unittest.TestCase):
 
     def test_keeps_the_rules(self):
         breaches = [*check_arrows(self.sources, self.arrows), *check_cycles(self.arrows),
+                    *check_wings(self.sources, self.wings),
+                    *check_cycles(arrows_of_wings(self.arrows, self.wings)),
                     *check_public_headers(self.sources), *check_private_headers(self.sources),
                     *check_sync_is_pure(self.sources), *check_coordinator_is_neutral(self.sources),
                     *check_randomness(self.sources), *check_lengths(self.sources),

@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 /// Runs whose SUT is on a board that SSH reaches: good ones, and every way in which they may fail.
-/// Each step by itself: host/board/test.
+/// Each step by itself: host/trial/board/test.
 namespace tether::system_test {
 namespace {
 

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 /// `tether campaign` and `tether report`: two conditions, two seeds. What a campaign refuses to
-/// resume: host/campaign/test.
+/// resume: host/trial/campaign/test.
 namespace tether::system_test {
 namespace {
 

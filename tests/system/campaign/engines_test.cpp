@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 /// Campaigns in parts: by GNU parallel, by hand, and on a real Slurm, whose two nodes are this
-/// machine. The rules are tested in host/shards/test.
+/// machine. The rules are tested in host/trial/shards/test.
 namespace tether::system_test {
 namespace {
 

@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-/// `tether size` as a whole. The statistics: host/sizing/test; the answer:
+/// `tether size` as a whole. The statistics: host/trial/sizing/test; the answer:
 /// host/report/test/answers.
 namespace tether::system_test {
 namespace {

@@ -10,7 +10,7 @@
 
 /// `tether campaign` is killed or stopped, or meets another one in its folder: finished trials are
 /// kept, and --resume goes on (docs/guide/faults.md). Who may use which folder:
-/// host/campaign/test/folder_claim_test.cpp.
+/// host/trial/campaign/test/folder_claim_test.cpp.
 namespace tether::system_test {
 namespace {
 

@@ -62,7 +62,7 @@ TEST_F(SteppedClock, ByADayInMidRunChangesNothing) {
               testing::AnyOf(date(before + 86'400), date(std::time(nullptr) + 86'400)));
 }
 
-// ---- A SUT's own clock: host/coordinator/test/clock_plausibility_test.cpp has each case
+// ---- A SUT's own clock: host/flight/coordinator/test/clock_plausibility_test.cpp has each case
 
 class WrongClock : public RunTest {};
 

@@ -140,7 +140,7 @@ TEST_F(Disk, ThatGetsFullInACampaignKeepsWhatIsFinished) {
 
 // ---- Not writable
 
-// Further cases: host/runner/test/trial_folder_test.cpp.
+// Further cases: host/trial/runner/test/trial_folder_test.cpp.
 TEST_F(Folder, ThatIsAFileIsNamed) {
   write_text(out_, "mine");
   const Output output = run(flight());
@@ -157,7 +157,7 @@ TEST_F(Folder, ThatIsRemovedInFlightEndsTheRun) {
   EXPECT_FALSE(std::filesystem::exists(out_));
 }
 
-// ---- Truncated records. The reader alone: host/record/test/damage_test.cpp
+// ---- Truncated records. The reader alone: host/record/record/test/damage_test.cpp
 
 using TruncatedRecord = RunTest;
 

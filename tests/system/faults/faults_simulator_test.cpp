@@ -8,7 +8,7 @@
 
 /// An external simulator is missing, fails, is killed or stopped, at each phase
 /// (docs/guide/faults.md). A stand-in takes the place of gzserver; its X server is real. What
-/// Gazebo's output means: host/sim/gazebo/test.
+/// Gazebo's output means: host/external/sim/gazebo/test.
 namespace tether::system_test {
 namespace {
 

@@ -23,7 +23,7 @@ class OwnSimulator : public testing::Test {
     const auto example = *built_ / "own-simulator", build = example / "build";
     std::filesystem::copy(kSource + "/examples/own-simulator", example);
     output_of({TETHER_CMAKE, "-S", example, "-B", build, "-DCMAKE_CXX_COMPILER=g++",
-               "-DTETHER_SCHEMA=" + kSource + "/host/sim/protocol/schema/simulator.fbs"});
+               "-DTETHER_SCHEMA=" + kSource + "/host/external/sim/protocol/schema/simulator.fbs"});
     output_of({TETHER_CMAKE, "--build", build});
   }
   static void TearDownTestSuite() { built_.reset(); }

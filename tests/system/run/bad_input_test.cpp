@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 /// A wrong file or option: one line that names file and line, exit code 2, and no output folder.
-/// Each rule of a file: host/scenario/test, host/sim/sdf/test.
+/// Each rule of a file: host/plan/scenario/test, host/world/sim/sdf/test.
 namespace tether::system_test {
 namespace {
 

@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-/// Runs whose SUTs' work is counted. Each key: host/scenario/test/files/load_target_test.cpp; the
-/// clock: target/client/test/clocks/counted_source_test.cpp.
+/// Runs whose SUTs' work is counted. Each key: host/plan/scenario/test/files/load_target_test.cpp;
+/// the clock: target/client/test/clocks/counted_source_test.cpp.
 namespace tether::system_test {
 namespace {
 

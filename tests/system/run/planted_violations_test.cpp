@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 /// `tether audit` on the record of a real run, altered. A violation of each rule:
-/// host/audit/test/planted_test.cpp.
+/// host/record/audit/test/planted_test.cpp.
 namespace tether::system_test {
 namespace {
 

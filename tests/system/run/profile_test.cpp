@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 /// Profiles from the command line and from a campaign. How layers are merged and what is refused:
-/// host/scenario/test. What a profile's delay costs: acquisition_test.cpp.
+/// host/plan/scenario/test. What a profile's delay costs: acquisition_test.cpp.
 namespace tether::system_test {
 namespace {
 

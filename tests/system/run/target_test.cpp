@@ -5,8 +5,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-/// What `--target FILE` changes in a run. Each key: host/scenario/test/files/load_target_test.cpp;
-/// how the program is started: host/runner/test.
+/// What `--target FILE` changes in a run. Each key:
+/// host/plan/scenario/test/files/load_target_test.cpp; how the program is started:
+/// host/trial/runner/test.
 namespace tether::system_test {
 namespace {
 

@@ -6,8 +6,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-/// Time that was recorded once and is replayed. Modes and stages: host/timing/test/replay_test.cpp;
-/// what ends the run: host/coordinator/test/replay_test.cpp.
+/// Time that was recorded once and is replayed. Modes and stages:
+/// host/record/timing/test/replay_test.cpp; what ends the run:
+/// host/flight/coordinator/test/replay_test.cpp.
 namespace tether::system_test {
 namespace {
 

@@ -105,7 +105,7 @@ SutMisdeed sends(const std::string& name,
 }
 
 // The rules themselves: common/link/test/validate_test.cpp,
-// host/coordinator/test/validator_test.cpp.
+// host/flight/coordinator/test/validator_test.cpp.
 const SutMisdeed kSutMisdeeds[] = {
     sends(
         "LargestStamp", [](auto next) { return command(next, kMax); }, ""),

@@ -39,7 +39,7 @@ std::filesystem::path source(const std::string& file) {
 
 /// A bare world with the scenario's UAV, and its timings after all layers, as "33333333 + 0,
 /// 37400000 ns late". No warning is expected. The shipped worlds:
-/// host/sim/sdf/test/project_worlds_test.cpp.
+/// host/world/sim/sdf/test/project_worlds_test.cpp.
 struct Resolved {
   sim::World world;
   std::vector<std::string> timings;  ///< camera, imu, range

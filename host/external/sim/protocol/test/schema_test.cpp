@@ -9,9 +9,9 @@ namespace {
 
 template <class T>
 void expect_same(const char* name) {
-  EXPECT_THAT(
-      wire::fields_in_schema(TETHER_SOURCE_DIR "/host/sim/protocol/schema/simulator.fbs", name),
-      testing::ElementsAreArray(wire::SchemaFields::of<T>()))
+  EXPECT_THAT(wire::fields_in_schema(
+                  TETHER_SOURCE_DIR "/host/external/sim/protocol/schema/simulator.fbs", name),
+              testing::ElementsAreArray(wire::SchemaFields::of<T>()))
       << name;
 }
 

@@ -7,7 +7,7 @@
 
 #include <tether/record/messages.h>
 
-/// Evaluates the state of a machine (host/board/src/target_probe.sh): what would disturb a
+/// Evaluates the state of a machine (host/trial/board/src/target_probe.sh): what would disturb a
 /// measurement. Pure functions.
 namespace tether::board {
 

@@ -184,7 +184,7 @@ struct BoardInfo {
 
   friend bool operator==(const BoardInfo&, const BoardInfo&) = default;
 };
-/// Readings of a machine by name, see host/board/src/target_probe.sh: "governor",
+/// Readings of a machine by name, see host/trial/board/src/target_probe.sh: "governor",
 /// "temperature_mc", … Values that are not available are left out.
 using Readings = std::map<std::string, std::string>;
 /// The machine that the SUTs ran on.
