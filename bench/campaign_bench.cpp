@@ -18,7 +18,7 @@
 #include <tether/runner/campaign_trials.h>
 #include <tether/runner/trial_server.h>
 #include <tether/scenario/campaign.h>
-#include <tether/sim_sdf/world_store.h>
+#include <tether/sim_sdf/load_world.h>
 
 // What a campaign costs besides its trials: trials that compute for 1.5 s and do not fly, run as
 // `tether campaign` runs them (folder, digests, servers, the world in memory, results). Yardstick:

@@ -9,12 +9,10 @@
 
 #include <tether/base/error.h>
 #include <tether/sim/step_check.h>
-#include <tether/sim_gazebo/gazebo_install.h>
 #include <tether/sim_gazebo/gazebo_simulator.h>
-#include <tether/sim_gazebo/gazebo_world.h>
 #include <tether/sim_mujoco/mujoco_simulator.h>
 #include <tether/sim_remote/remote_simulator.h>
-#include <tether/sim_sdf/sdf_version.h>
+#include <tether/sim_sdf/load_world.h>
 
 namespace tether::app {
 

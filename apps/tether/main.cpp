@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include <tether/os/interrupt.h>
-#include <tether/sim_sdf/world_store.h>
+#include <tether/sim_sdf/load_world.h>
 
 namespace {
 

@@ -2,7 +2,7 @@
 
 #include <set>
 
-#include <tether/rig/mission_file.h>
+#include <tether/rig/mission.h>
 #include <tether/rig/rig_file.h>
 
 /// Mission files and rig files: what people write for `tether-sut`. Input: the file, read as both.

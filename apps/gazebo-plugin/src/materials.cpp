@@ -8,7 +8,6 @@
 
 #include <tether/base/error.h>
 #include <tether/sim_gazebo_plugin/box_mesh.h>
-#include <tether/sim_gazebo_plugin/texture_repeat.h>
 
 namespace tether::gazebo_plugin {
 namespace {

@@ -8,7 +8,7 @@
 
 #include <gazebo/ode/ode.h>
 
-#include <tether/sim_gazebo_plugin/ray_frames.h>
+#include <tether/sim_gazebo_plugin/shape_rays.h>
 #include <tether/sim_protocol/messages.h>
 
 namespace tether::gazebo_plugin {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include <tether/supervisor/settings.h>
+#include <tether/supervisor/supervise.h>
 
 namespace tether::exec {
 

@@ -23,7 +23,7 @@
 #include <tether/calibration/profile_text.h>
 #include <tether/os/terminal.h>
 #include <tether/rig/device_arguments.h>
-#include <tether/rig/mission_file.h>
+#include <tether/rig/mission.h>
 #include <tether/rig/task_fields.h>
 
 // The options of all commands; of this program, only this source includes CLI11. The options of

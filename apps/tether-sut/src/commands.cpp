@@ -8,7 +8,7 @@
 #include <ostream>
 #include <utility>
 
-#include <tether/calibration/machine.h>
+#include <tether/calibration/calibration.h>
 #include <tether/calibration/profile_text.h>
 #include <tether/calibration/whole_file.h>
 #include <tether/os/clock.h>

@@ -9,7 +9,7 @@
 #include <sys/utsname.h>
 
 #include <tether/base/version.h>
-#include <tether/calibration/machine.h>
+#include <tether/calibration/calibration.h>
 #include <tether/client/simulated_vehicle.h>
 #include <tether/rig/interruptible_vehicle.h>
 #include <tether/vision/runtime.h>

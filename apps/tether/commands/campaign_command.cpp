@@ -24,13 +24,12 @@
 
 #include <fmt/format.h>
 
-#include <tether/base/counted.h>
 #include <tether/base/error.h>
+#include <tether/base/text.h>
 #include <tether/campaign/campaign_folder.h>
 #include <tether/campaign/campaign_results.h>
 #include <tether/campaign/run_campaign.h>
 #include <tether/os/program.h>
-#include <tether/os/shell_word.h>
 #include <tether/os/text_file.h>
 #include <tether/report/junit.h>
 #include <tether/runner/campaign_trials.h>

@@ -9,8 +9,8 @@
 
 #include <fmt/format.h>
 
-#include <tether/base/counted.h>
 #include <tether/base/error.h>
+#include <tether/base/text.h>
 #include <tether/campaign/campaign_plan.h>
 #include <tether/campaign/campaign_results.h>
 #include <tether/os/text_file.h>

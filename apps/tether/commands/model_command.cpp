@@ -28,17 +28,15 @@ std::string flight_text(const sim::Uav& uav) {
   const auto rotors = static_cast<double>(a.rotors.size());
   const double weight_N = a.mass_kg * kGravity_m_s2;
   const double hover_rad_s = std::sqrt(weight_N / (rotors * a.thrust_coefficient));
-  const double full_thrust_N =
-      rotors * a.thrust_coefficient * a.max_rotor_speed_rad_s * a.max_rotor_speed_rad_s;
   std::string text = fmt::format(
       "  mass              {:.4g} kg\n"
       "  inertia           {:.3g}, {:.3g}, {:.3g} kg m²\n"
       "  thrust to weight  {:.2f}\n"
       "  hover             at {:.0f} rad/s, {:.0f} % of the rotors' full speed\n"
       "  time constants    {:.4g} s faster, {:.4g} s slower\n",
-      a.mass_kg, a.inertia_kg_m2.x, a.inertia_kg_m2.y, a.inertia_kg_m2.z, full_thrust_N / weight_N,
-      hover_rad_s, 100.0 * hover_rad_s / a.max_rotor_speed_rad_s, a.time_constant_up_s,
-      a.time_constant_down_s);
+      a.mass_kg, a.inertia_kg_m2.x, a.inertia_kg_m2.y, a.inertia_kg_m2.z,
+      flight_limits(a).max_thrust_N / weight_N, hover_rad_s,
+      100.0 * hover_rad_s / a.max_rotor_speed_rad_s, a.time_constant_up_s, a.time_constant_down_s);
   for (const uav::Rotor& rotor : a.rotors)
     text += fmt::format("  rotor             {:.3f} {:.3f} {:.3f} m, {}\n", rotor.p_BR.x,
                         rotor.p_BR.y, rotor.p_BR.z, rotor.direction > 0 ? "ccw" : "cw");

@@ -14,11 +14,11 @@
 #include <nlohmann/json.hpp>
 
 #include <tether/autopilot/external.h>
-#include <tether/os/shell_word.h>
+#include <tether/os/program.h>
 #include <tether/os/text_file.h>
 #include <tether/runner/trial_folder.h>
 #include <tether/scenario/scenario.h>
-#include <tether/toml/number_text.h>
+#include <tether/toml/table.h>
 
 namespace tether::app {
 

@@ -15,10 +15,9 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <tether/campaign/refuse_folder.h>
+#include <tether/campaign/folder_claim.h>
 #include <tether/campaign/result.h>
 #include <tether/os/program.h>
-#include <tether/os/shell_word.h>
 #include <tether/os/terminal.h>
 #include <tether/os/text_file.h>
 #include <tether/report/junit.h>

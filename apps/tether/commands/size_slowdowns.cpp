@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 
 #include <tether/os/program.h>
-#include <tether/runner/target_choice.h>
+#include <tether/runner/trial_request.h>
 #include <tether/scenario/shipped_files.h>
 #include <tether/scenario/slowness.h>
 #include <tether/sizing/sizing.h>

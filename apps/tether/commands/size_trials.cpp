@@ -18,10 +18,9 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <tether/base/counted.h>
 #include <tether/base/error.h>
+#include <tether/base/text.h>
 #include <tether/os/program.h>
-#include <tether/os/shell_word.h>
 #include <tether/os/terminal.h>
 #include <tether/report/verdict.h>
 #include <tether/runner/campaign_trials.h>

@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include <tether/base/counted.h>
+#include <tether/base/text.h>
 #include <tether/os/program.h>
 #include <tether/report/size_report.h>
 #include <tether/scenario/shipped_files.h>

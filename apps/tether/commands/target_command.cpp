@@ -12,7 +12,6 @@
 
 #include <tether/base/error.h>
 #include <tether/base/version.h>
-#include <tether/board/bandwidth_probe.h>
 #include <tether/board/target_probe.h>
 #include <tether/board/target_readings.h>
 #include <tether/os/program.h>

@@ -12,7 +12,7 @@
 #include <tether/os/interrupt.h>
 #include <tether/runner/trial.h>
 #include <tether/runner/trial_request.h>
-#include <tether/sim_sdf/world_store.h>
+#include <tether/sim_sdf/load_world.h>
 
 namespace tether::app {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <tether/runner/trial_server.h>
-#include <tether/sim_sdf/world_store.h>
+#include <tether/sim_sdf/load_world.h>
 
 namespace tether::app {
 

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include <tether/base/counted.h>
+#include <tether/base/text.h>
 #include <tether/os/interrupt.h>
 #include <tether/os/program.h>
 #include <tether/sim_sdf/load_world.h>

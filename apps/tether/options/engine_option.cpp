@@ -11,7 +11,6 @@
 #include <fmt/format.h>
 
 #include <tether/os/program.h>
-#include <tether/os/shell_word.h>
 #include <tether/runner/trial_request.h>
 #include <tether/scenario/shipped_files.h>
 

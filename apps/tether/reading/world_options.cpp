@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include <tether/base/counted.h>
+#include <tether/base/text.h>
 
 namespace tether::app {
 

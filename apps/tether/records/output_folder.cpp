@@ -4,7 +4,7 @@
 #include <fnmatch.h>
 
 #include <tether/base/error.h>
-#include <tether/campaign/refuse_folder.h>
+#include <tether/campaign/folder_claim.h>
 
 namespace tether::app {
 

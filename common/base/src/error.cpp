@@ -5,7 +5,6 @@
 
 #include <tether/base/enum_name.h>
 #include <tether/base/error.h>
-#include <tether/base/system_reason.h>
 
 namespace tether {
 

@@ -2,6 +2,7 @@
 #include <vector>
 
 #include <tether/base/suggest.h>
+#include <tether/base/text.h>
 
 namespace tether {
 namespace {
@@ -31,14 +32,9 @@ std::string_view without_unit(std::string_view key) {
   return key;
 }
 
-bool is_same_in_lower_case(std::string_view a, std::string_view b) {
-  const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c; };
-  return std::ranges::equal(a, b, {}, lower, lower);
-}
-
 bool differs_in_form_only(std::string_view word, std::string_view candidate) {
   const std::string_view stem = without_unit(word);
-  return is_same_in_lower_case(word, candidate) || stem == without_unit(candidate) ||
+  return lower_case(word) == lower_case(candidate) || stem == without_unit(candidate) ||
          (stem.size() >= 3 && candidate.starts_with(stem));
 }
 

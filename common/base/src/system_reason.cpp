@@ -2,7 +2,7 @@
 #include <cstring>
 #include <system_error>
 
-#include <tether/base/system_reason.h>
+#include <tether/base/error.h>
 
 namespace tether {
 

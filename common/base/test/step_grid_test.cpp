@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <tether/base/random.h>
-#include <tether/base/step_grid.h>
+#include <tether/base/time.h>
 
 namespace tether {
 namespace {

@@ -4,7 +4,6 @@
 #include <sys/random.h>
 
 #include <tether/base/error.h>
-#include <tether/base/system_reason.h>
 #include <tether/link/server.h>
 
 namespace tether::link {

@@ -8,7 +8,7 @@
 #include <charconv>
 #include <map>
 
-#include <tether/mavlink/message_type.h>
+#include <tether/mavlink/message.h>
 
 namespace tether::mavlink {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <tether/mavlink/message_type.h>
+#include <tether/mavlink/message.h>
 
 namespace tether::mavlink {
 namespace {

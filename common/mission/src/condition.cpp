@@ -5,7 +5,7 @@
 
 #include <tether/base/suggest.h>
 #include <tether/mission/condition.h>
-#include <tether/toml/number_text.h>
+#include <tether/toml/table.h>
 
 namespace tether::mission {
 namespace {

@@ -8,7 +8,7 @@
 
 #include <tether/base/suggest.h>
 #include <tether/mission/mission.h>
-#include <tether/toml/number_text.h>
+#include <tether/toml/table.h>
 
 // Reads the tasks first, because clauses refer to them by name; then the clauses, each checked by
 // itself; then what clauses demand together.

@@ -2,7 +2,7 @@
 #include <array>
 
 #include <tether/base/units.h>
-#include <tether/mission/quantity.h>
+#include <tether/mission/condition.h>
 
 namespace tether::mission {
 

@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include <tether/mission/quantity.h>
+#include <tether/mission/condition.h>
 
 namespace tether::mission {
 namespace {

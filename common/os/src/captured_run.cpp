@@ -1,8 +1,7 @@
 #include <chrono>
 
-#include <tether/os/captured_run.h>
 #include <tether/os/child_process.h>
-#include <tether/os/memory_file.h>
+#include <tether/os/file_descriptor.h>
 
 namespace tether::os {
 

@@ -18,11 +18,9 @@
 #include <unistd.h>
 
 #include <tether/base/error.h>
-#include <tether/base/system_reason.h>
 #include <tether/os/child_process.h>
 #include <tether/os/file_descriptor.h>
 #include <tether/os/interrupt.h>
-#include <tether/os/pipe.h>
 #include <tether/os/process_table.h>
 #include <tether/os/program.h>
 

@@ -1,11 +1,10 @@
-#include <array>
 #include <atomic>
+#include <cstddef>
 #include <cstdlib>
-#include <fstream>
 #include <new>
-#include <string_view>
 #include <system_error>
 
+#include <elf.h>
 #include <fcntl.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
@@ -15,6 +14,7 @@
 #include <tether/os/counted_program.h>
 #include <tether/os/file_descriptor.h>
 #include <tether/os/program.h>
+#include <tether/os/text_file.h>
 
 namespace tether::os {
 
@@ -57,16 +57,12 @@ std::filesystem::path find_emulator(const Emulator& emulator) try {
 }
 
 void require_emulated(const Emulator& emulator, const std::filesystem::path& program) {
-  constexpr std::string_view kElf =
-      "\x7f"
-      "ELF";
-  constexpr std::size_t kMachineAt = 18;
-  constexpr unsigned char kX86_64 = 62, kAarch64 = 183;
-  std::array<char, kMachineAt + 1> head{};
-  std::ifstream(program, std::ios::binary).read(head.data(), head.size());
+  constexpr std::size_t kMachineAt = offsetof(Elf64_Ehdr, e_machine);
+  const std::string head = begin_of(program, kMachineAt + 1);
   const bool is_arm = emulator.program.ends_with("aarch64");
-  const bool is_script = !std::string_view(head.data(), head.size()).starts_with(kElf);
-  if (!is_script && static_cast<unsigned char>(head[kMachineAt]) == (is_arm ? kAarch64 : kX86_64))
+  const bool is_script = !head.starts_with(ELFMAG);
+  if (!is_script && head.size() > kMachineAt &&
+      static_cast<unsigned char>(head[kMachineAt]) == (is_arm ? EM_AARCH64 : EM_X86_64))
     return;
   throw Error(ErrorCode::kSetup,
               program.string() + " is " +

@@ -4,9 +4,7 @@
 #include <unistd.h>
 
 #include <tether/base/error.h>
-#include <tether/base/system_reason.h>
-#include <tether/os/memory_file.h>
-#include <tether/os/pipe.h>
+#include <tether/os/file_descriptor.h>
 #include <tether/os/text_file.h>
 
 namespace tether::os {

@@ -4,7 +4,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <tether/os/pipe.h>
+#include <tether/os/file_descriptor.h>
 
 namespace tether::os {
 

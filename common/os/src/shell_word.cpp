@@ -2,7 +2,7 @@
 #include <cctype>
 #include <string_view>
 
-#include <tether/os/shell_word.h>
+#include <tether/os/program.h>
 
 namespace tether::os {
 

@@ -7,7 +7,6 @@
 #include <unistd.h>
 
 #include <tether/base/error.h>
-#include <tether/base/system_reason.h>
 #include <tether/os/temporary_folder.h>
 
 namespace tether::os {

@@ -24,9 +24,7 @@
 
 #include <tether/base/error.h>
 #include <tether/base/suggest.h>
-#include <tether/base/system_reason.h>
 #include <tether/os/file_descriptor.h>
-#include <tether/os/pipe.h>
 #include <tether/os/text_file.h>
 
 namespace tether::os {

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <tether/os/captured_run.h>
+#include <tether/os/child_process.h>
 
 namespace tether::os {
 namespace {

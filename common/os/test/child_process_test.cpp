@@ -14,9 +14,9 @@
 #include <tether/base_testing/scratch_folder.h>
 #include <tether/base_testing/thrown_error.h>
 #include <tether/os/child_process.h>
+#include <tether/os/file_descriptor.h>
 #include <tether/os/interrupt.h>
 #include <tether/os/machine.h>
-#include <tether/os/pipe.h>
 #include <tether/os/process_table.h>
 #include <tether/os/text_file.h>
 

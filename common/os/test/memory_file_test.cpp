@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <tether/os/memory_file.h>
+#include <tether/os/file_descriptor.h>
 #include <tether/os/text_file.h>
 
 namespace tether::os {

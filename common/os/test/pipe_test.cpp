@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <tether/os/pipe.h>
+#include <tether/os/file_descriptor.h>
 
 namespace tether::os {
 namespace {

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include <tether/os/captured_run.h>
-#include <tether/os/shell_word.h>
+#include <tether/os/child_process.h>
+#include <tether/os/program.h>
 
 namespace tether::os {
 namespace {

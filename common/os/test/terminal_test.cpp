@@ -3,7 +3,6 @@
 #include <sys/ioctl.h>
 
 #include <tether/os/file_descriptor.h>
-#include <tether/os/pipe.h>
 #include <tether/os/terminal.h>
 
 namespace tether::os {

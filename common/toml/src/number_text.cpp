@@ -2,7 +2,7 @@
 #include <charconv>
 #include <cmath>
 
-#include <tether/toml/number_text.h>
+#include <tether/toml/table.h>
 
 namespace tether::toml {
 

@@ -5,7 +5,6 @@
 
 #include <tether/base/suggest.h>
 #include <tether/os/text_file.h>
-#include <tether/toml/number_text.h>
 #include <tether/toml/table.h>
 
 /// Values are checked where they are read. `required` finds the node of a key, `text_of`,

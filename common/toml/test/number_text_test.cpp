@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <tether/toml/number_text.h>
+#include <tether/toml/table.h>
 
 namespace tether::toml {
 namespace {

@@ -10,7 +10,7 @@
 #include <tether/base/result.h>
 #include <tether/base/version.h>
 #include <tether/calibration/calibrate.h>
-#include <tether/calibration/machine.h>
+#include <tether/calibration/calibration.h>
 #include <tether/calibration/profile_text.h>
 #include <tether/calibration/sensor_table.h>
 #include <tether/calibration/whole_file.h>

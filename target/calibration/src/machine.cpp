@@ -7,7 +7,7 @@
 #include <sys/utsname.h>
 #include <unistd.h>
 
-#include <tether/calibration/machine.h>
+#include <tether/calibration/calibration.h>
 
 namespace tether::calibration {
 namespace {

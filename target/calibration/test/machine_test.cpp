@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 
 #include <tether/base_testing/scratch_folder.h>
-#include <tether/calibration/machine.h>
+#include <tether/calibration/calibration.h>
 
 namespace tether::calibration {
 namespace {

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include <tether/base/error.h>
-#include <tether/base/printable.h>
+#include <tether/base/text.h>
 #include <tether/link/codec.h>
 #include <tether/os/text_file.h>
 

@@ -2,7 +2,7 @@
 #include <vector>
 
 #include <tether/mission/mission.h>
-#include <tether/rig/mission_file.h>
+#include <tether/rig/mission.h>
 #include <tether/rig/task_fields.h>
 #include <tether/toml/table.h>
 

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <tether/base/units.h>
-#include <tether/rig/mission_file.h>
+#include <tether/rig/mission.h>
 
 namespace tether::rig {
 namespace {

@@ -14,7 +14,6 @@
 #include <sys/types.h>
 
 #include <tether/client/exec/clock_page.h>
-#include <tether/supervisor/settings.h>
 #include <tether/supervisor/supervise.h>
 
 namespace tether::supervisor {

@@ -11,7 +11,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include <tether/os/memory_file.h>
+#include <tether/os/file_descriptor.h>
 
 namespace tether::supervisor {
 namespace {

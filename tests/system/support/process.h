@@ -8,7 +8,7 @@
 
 #include <tether/base_testing/scratch_folder.h>
 #include <tether/os/child_process.h>
-#include <tether/os/pipe.h>
+#include <tether/os/file_descriptor.h>
 
 namespace tether::system_test {
 

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include <tether/autopilot/flight_controller.h>
-#include <tether/base/printable.h>
+#include <tether/base/text.h>
 #include <tether/mavlink/frame.h>
 
 namespace tether::autopilot {

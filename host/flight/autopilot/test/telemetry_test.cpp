@@ -2,7 +2,7 @@
 
 #include <numbers>
 
-#include <tether/mavlink/message_type.h>
+#include <tether/mavlink/message.h>
 
 namespace tether::autopilot {
 namespace {

@@ -5,7 +5,6 @@
 #include <optional>
 #include <vector>
 
-#include <tether/base/step_grid.h>
 #include <tether/base/time.h>
 #include <tether/sync/least_tree.h>
 #include <tether/uav/setpoint.h>

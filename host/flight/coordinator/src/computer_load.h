@@ -2,7 +2,6 @@
 
 #include <deque>
 
-#include <tether/base/step_grid.h>
 #include <tether/base/time.h>
 
 namespace tether::coordinator {

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include <tether/base/printable.h>
+#include <tether/base/text.h>
 #include <tether/coordinator/coordinator.h>
 
 /// The loop of a run: its start, pacing, limits of WT, and its end. Each turn advances ST as far as

@@ -7,7 +7,7 @@
 #include <tuple>
 #include <utility>
 
-#include <tether/base/printable.h>
+#include <tether/base/text.h>
 
 /// The header of a run's record: everything that its numbers depend on.
 namespace tether::coordinator {

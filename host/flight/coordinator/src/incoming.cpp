@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include <tether/base/printable.h>
+#include <tether/base/text.h>
 
 /// Messages from SUTs: Hello, requests, progress, annotations, and the end of a connection. Each
 /// message is validated first; a protocol violation ends the run. A valid request is planned

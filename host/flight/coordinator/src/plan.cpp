@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include <tether/base/printable.h>
+#include <tether/base/text.h>
 #include <tether/link/codec.h>
 
 namespace tether::coordinator {

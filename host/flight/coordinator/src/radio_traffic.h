@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include <tether/base/step_grid.h>
+#include <tether/base/time.h>
 #include <tether/link/messages.h>
 #include <tether/radio/medium.h>
 #include <tether/record/messages.h>

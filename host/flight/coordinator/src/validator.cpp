@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include <tether/base/printable.h>
+#include <tether/base/text.h>
 #include <tether/sync/barrier_synchronizer.h>
 
 namespace tether::coordinator {

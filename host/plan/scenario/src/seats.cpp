@@ -7,13 +7,11 @@
 
 #include <tether/base/error.h>
 #include <tether/scenario/scenario.h>
+#include <tether/sync/shared_cores.h>
 
 // The computers of a fleet, and which SUTs share them.
 namespace tether::scenario {
 namespace {
-
-// The limit of sync::SharedCores.
-constexpr std::size_t kMostPrograms = 40;
 
 [[noreturn]] void fail(const Computer& computer, const std::string& what) {
   throw Error(ErrorCode::kBadFile, computer.at,
@@ -31,9 +29,9 @@ void require_sharable(const Condition& condition, std::size_t index) {
     ++suts;
     if (seat.pinned_core) pinned.insert(*seat.pinned_core);
   }
-  if (suts > kMostPrograms)
-    fail(computer,
-         fmt::format("{} UAVs name it. At most {} can share a target", suts, kMostPrograms));
+  if (suts > sync::SharedCores::kMostPrograms)
+    fail(computer, fmt::format("{} UAVs name it. At most {} can share a target", suts,
+                               sync::SharedCores::kMostPrograms));
   if (!pinned.empty() && *pinned.rbegin() >= computer.cores)
     fail(computer, fmt::format("core {} has pinned programs, but there are {} cores, from 0 on. "
                                "Lower 'pinned_core', or raise 'cores'",

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include <tether/audit/audit.h>
-#include <tether/base/printable.h>
+#include <tether/base/text.h>
 
 namespace tether::audit {
 

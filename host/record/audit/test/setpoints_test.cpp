@@ -8,7 +8,7 @@
 
 #include <gmock/gmock.h>
 
-#include <tether/base/step_grid.h>
+#include <tether/base/time.h>
 
 namespace tether::audit {
 namespace {

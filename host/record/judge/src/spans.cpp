@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <tether/base/printable.h>
+#include <tether/base/text.h>
 
 namespace tether::judge {
 namespace {

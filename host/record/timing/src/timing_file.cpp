@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include <tether/base/error.h>
-#include <tether/base/printable.h>
+#include <tether/base/text.h>
 #include <tether/link/codec.h>
 #include <tether/os/text_file.h>
 #include <tether/timing/timing.h>

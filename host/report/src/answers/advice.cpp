@@ -5,9 +5,9 @@
 
 #include <fmt/format.h>
 
-#include <tether/base/counted.h>
+#include <tether/base/text.h>
 #include <tether/base/text_table.h>
-#include <tether/os/shell_word.h>
+#include <tether/os/program.h>
 #include <tether/report/verdict.h>
 
 // What to do next, in sentences.

@@ -11,7 +11,7 @@
 
 #include <fmt/format.h>
 
-#include <tether/base/counted.h>
+#include <tether/base/text.h>
 #include <tether/base/text_table.h>
 #include <tether/campaign/copies.h>
 #include <tether/campaign/statistics.h>

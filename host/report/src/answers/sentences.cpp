@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include <tether/base/counted.h>
+#include <tether/base/text.h>
 #include <tether/base/text_table.h>
 #include <tether/report/verdict.h>
 

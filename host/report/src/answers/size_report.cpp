@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include <tether/base/counted.h>
+#include <tether/base/text.h>
 #include <tether/campaign/campaign_plan.h>
 #include <tether/campaign/copies.h>
 #include <tether/campaign/statistics.h>

@@ -6,10 +6,10 @@
 
 #include <fmt/format.h>
 
-#include <tether/base/counted.h>
+#include <tether/base/text.h>
 #include <tether/campaign/campaign_plan.h>
 #include <tether/campaign/copies.h>
-#include <tether/os/shell_word.h>
+#include <tether/os/program.h>
 #include <tether/report/size_report.h>
 
 namespace tether::report {

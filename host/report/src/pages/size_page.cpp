@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include <tether/base/counted.h>
+#include <tether/base/text.h>
 #include <tether/report/size_report.h>
 
 namespace tether::report {

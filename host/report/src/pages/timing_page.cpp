@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include <tether/base/text_table.h>
-#include <tether/os/shell_word.h>
+#include <tether/os/program.h>
 #include <tether/report/table.h>
 #include <tether/report/timing_page.h>
 

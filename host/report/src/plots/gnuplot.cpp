@@ -6,8 +6,6 @@
 #include <fmt/format.h>
 
 #include <tether/base/error.h>
-#include <tether/base/system_reason.h>
-#include <tether/os/captured_run.h>
 #include <tether/os/child_process.h>
 #include <tether/os/program.h>
 #include <tether/report/gnuplot.h>

@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 #include <tinyxml2.h>
 
-#include <tether/base/printable.h>
+#include <tether/base/text.h>
 
 // Two steps on gnuplot's SVG: finished_svg makes it an independent file (inks instead of colours, a
 // title, a style sheet), and inline_svg makes a finished file part of an HTML page.

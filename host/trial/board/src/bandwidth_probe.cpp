@@ -5,10 +5,9 @@
 #include <thread>
 #include <vector>
 
-#include <tether/board/bandwidth_probe.h>
-#include <tether/os/captured_run.h>
+#include <tether/board/target_probe.h>
 #include <tether/os/child_process.h>
-#include <tether/os/pipe.h>
+#include <tether/os/file_descriptor.h>
 
 namespace tether::board {
 

@@ -14,12 +14,10 @@
 #include <unistd.h>
 
 #include <tether/base/error.h>
-#include <tether/base/system_reason.h>
 #include <tether/board/board.h>
-#include <tether/os/captured_run.h>
 #include <tether/os/child_process.h>
+#include <tether/os/file_descriptor.h>
 #include <tether/os/interrupt.h>
-#include <tether/os/memory_file.h>
 #include <tether/os/text_file.h>
 
 /// A board for one run. A shell on the board, the keeper (board_keeper.sh), takes the lock, and

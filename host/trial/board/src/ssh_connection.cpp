@@ -10,7 +10,6 @@
 
 #include <tether/base/error.h>
 #include <tether/board/ssh_connection.h>
-#include <tether/os/captured_run.h>
 #include <tether/os/child_process.h>
 #include <tether/os/text_file.h>
 

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include <tether/os/shell_word.h>
+#include <tether/os/program.h>
 
 namespace tether::board {
 

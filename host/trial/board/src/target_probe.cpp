@@ -7,7 +7,7 @@
 #include <tether/base/error.h>
 #include <tether/board/target_probe.h>
 #include <tether/board/target_readings.h>
-#include <tether/os/captured_run.h>
+#include <tether/os/child_process.h>
 
 namespace tether::board {
 

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <tether/board/bandwidth_probe.h>
+#include <tether/board/target_probe.h>
 
 namespace tether::board {
 namespace {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <tether/base_testing/scratch_folder.h>
-#include <tether/os/captured_run.h>
+#include <tether/os/child_process.h>
 
 namespace tether::board {
 namespace {

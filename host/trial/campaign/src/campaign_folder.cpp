@@ -5,9 +5,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <tether/base/counted.h>
+#include <tether/base/text.h>
 #include <tether/campaign/campaign_folder.h>
-#include <tether/campaign/refuse_folder.h>
+#include <tether/campaign/folder_claim.h>
 #include <tether/os/temporary_folder.h>
 #include <tether/os/text_file.h>
 

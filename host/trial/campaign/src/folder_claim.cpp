@@ -12,10 +12,8 @@
 #include <unistd.h>
 
 #include <tether/base/error.h>
-#include <tether/base/system_reason.h>
 #include <tether/campaign/campaign_folder.h>
 #include <tether/campaign/folder_claim.h>
-#include <tether/campaign/refuse_folder.h>
 #include <tether/os/process_table.h>
 
 // A run locks its folder. A campaign locks its folder too, and alone the lock file in it. A run or

@@ -6,7 +6,7 @@
 
 #include <tether/campaign/campaign_folder.h>
 #include <tether/campaign_testing/sample_campaign.h>
-#include <tether/os/pipe.h>
+#include <tether/os/file_descriptor.h>
 
 /// With whole programs: tests/system/faults/faults_campaign_test.cpp.
 namespace tether::campaign {

@@ -12,7 +12,7 @@
 #include <tether/campaign/campaign_plan.h>
 #include <tether/os/program.h>
 #include <tether/runner/campaign_trials.h>
-#include <tether/sim_sdf/world_store.h>
+#include <tether/sim_sdf/load_world.h>
 
 namespace tether::runner {
 

@@ -6,10 +6,9 @@
 
 #include <fmt/format.h>
 
-#include <tether/base/counted.h>
 #include <tether/base/error.h>
 #include <tether/base/suggest.h>
-#include <tether/os/captured_run.h>
+#include <tether/base/text.h>
 #include <tether/os/child_process.h>
 #include <tether/os/counted_program.h>
 #include <tether/os/machine.h>

@@ -9,7 +9,7 @@
 #include <tether/runner/shard_flights.h>
 #include <tether/runner/trial.h>
 #include <tether/runner/trial_request.h>
-#include <tether/shards/hand_in.h>
+#include <tether/shards/collect.h>
 
 namespace tether::runner {
 namespace {

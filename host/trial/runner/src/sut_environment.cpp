@@ -8,7 +8,7 @@
 #include <fmt/ranges.h>
 
 #include <tether/os/child_process.h>
-#include <tether/os/shell_word.h>
+#include <tether/os/program.h>
 
 namespace tether::runner {
 

@@ -1,4 +1,4 @@
-#include <tether/runner/target_choice.h>
+#include <tether/runner/trial_request.h>
 
 namespace tether::runner {
 

@@ -25,7 +25,7 @@
 #include <tether/os/text_file.h>
 #include <tether/runner/trial.h>
 #include <tether/runner/trial_folder.h>
-#include <tether/sim_sdf/world_store.h>
+#include <tether/sim_sdf/load_world.h>
 
 /// One trial: checks options and files, claims the folder, starts the board and the simulator,
 /// conducts the run (TrialRun), and writes the result, which is evaluated from its messages.

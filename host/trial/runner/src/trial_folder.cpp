@@ -14,7 +14,7 @@
 
 #include <tether/base/error.h>
 #include <tether/campaign/campaign_folder.h>
-#include <tether/campaign/refuse_folder.h>
+#include <tether/campaign/folder_claim.h>
 #include <tether/campaign/result.h>
 #include <tether/campaign/run_campaign.h>
 #include <tether/os/text_file.h>

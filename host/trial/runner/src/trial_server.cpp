@@ -9,9 +9,8 @@
 #include <unistd.h>
 
 #include <tether/base/error.h>
-#include <tether/base/system_reason.h>
 #include <tether/os/child_process.h>
-#include <tether/os/pipe.h>
+#include <tether/os/file_descriptor.h>
 #include <tether/os/program.h>
 #include <tether/os/text_file.h>
 #include <tether/runner/trial_server.h>

@@ -7,7 +7,7 @@
 #include <tether/os/program.h>
 #include <tether/runner/campaign_trials.h>
 #include <tether/runner/trial_server.h>
-#include <tether/sim_sdf/world_store.h>
+#include <tether/sim_sdf/load_world.h>
 
 namespace tether::runner {
 namespace {

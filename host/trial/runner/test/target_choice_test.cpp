@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <tether/base_testing/thrown_error.h>
-#include <tether/runner/target_choice.h>
+#include <tether/runner/trial_request.h>
 
 namespace tether::runner {
 namespace {

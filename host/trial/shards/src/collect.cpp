@@ -5,7 +5,6 @@
 #include <tether/campaign/campaign_plan.h>
 #include <tether/os/text_file.h>
 #include <tether/shards/collect.h>
-#include <tether/shards/hand_in.h>
 
 namespace tether::shards {
 namespace {

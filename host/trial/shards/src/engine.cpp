@@ -7,7 +7,7 @@
 
 #include <tether/base/error.h>
 #include <tether/base/suggest.h>
-#include <tether/os/shell_word.h>
+#include <tether/os/program.h>
 #include <tether/shards/engine.h>
 #include <tether/toml/table.h>
 

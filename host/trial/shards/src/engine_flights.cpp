@@ -7,12 +7,12 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <tether/base/counted.h>
 #include <tether/base/error.h>
+#include <tether/base/text.h>
 #include <tether/campaign/campaign_folder.h>
 #include <tether/os/child_process.h>
 #include <tether/os/clock.h>
-#include <tether/os/shell_word.h>
+#include <tether/os/program.h>
 #include <tether/os/text_file.h>
 #include <tether/shards/engine_flights.h>
 

@@ -8,11 +8,10 @@
 #include <unistd.h>
 
 #include <tether/base/error.h>
-#include <tether/base/system_reason.h>
 #include <tether/campaign/campaign_folder.h>
 #include <tether/os/file_descriptor.h>
 #include <tether/os/temporary_folder.h>
-#include <tether/shards/hand_in.h>
+#include <tether/shards/collect.h>
 
 // A copy under a name of its own, flushed, then one rename: it is atomic, and fails if the new name
 // is a folder with content.

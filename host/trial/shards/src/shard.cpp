@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include <tether/base/error.h>
-#include <tether/base/system_reason.h>
 #include <tether/campaign/campaign_folder.h>
 #include <tether/os/temporary_folder.h>
 #include <tether/os/text_file.h>

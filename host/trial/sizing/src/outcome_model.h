@@ -3,7 +3,7 @@
 #include <array>
 #include <cstddef>
 
-#include <tether/sizing/question.h>
+#include <tether/sizing/search.h>
 
 /// What a flight says about a curve, given one middle, width and scale of the margin.
 namespace tether::sizing {

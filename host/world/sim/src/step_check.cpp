@@ -112,8 +112,7 @@ double longest_ms(Holds holds) {
 }
 
 double lift_by_weight(const uav::MultirotorParameters& airframe, double gravity_m_s2) {
-  return static_cast<double>(airframe.rotors.size()) * uav::max_rotor_thrust_N(airframe) /
-         (airframe.mass_kg * gravity_m_s2);
+  return flight_limits(airframe).max_thrust_N / (airframe.mass_kg * gravity_m_s2);
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 #include <utility>
 #include <variant>
 
-#include <tether/base/printable.h>
+#include <tether/base/text.h>
 #include <tether/link/codec.h>
 
 // What serial and concurrent vehicles have in common: making requests, checking arguments against

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include <tether/base/printable.h>
+#include <tether/base/text.h>
 #include <tether/link/codec.h>
 
 namespace tether::client {

@@ -14,7 +14,7 @@
 
 #include <tether/base_testing/sanitizer.h>
 #include <tether/client/sut_clock.h>
-#include <tether/os/pipe.h>
+#include <tether/os/file_descriptor.h>
 #include <tether/os/process_table.h>
 
 /// The CPU clock with real processes.

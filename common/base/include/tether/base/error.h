@@ -5,7 +5,7 @@
 #include <string_view>
 #include <utility>
 
-#include <tether/base/printable.h>
+#include <tether/base/text.h>
 
 namespace tether {
 
@@ -67,5 +67,12 @@ class Error : public std::runtime_error {
 /// For a file that could not be read: checks whether the cause is the limit of open files of this
 /// process. @throws Error(kSetup) if it is.
 void require_a_handle_for(const std::string& file);
+
+/// The system's text for `error_number` (an errno), with advice if the limit of open files is
+/// reached. Thread-safe.
+std::string reason_of(int error_number);
+
+/// "signal 9 (Killed)". Not thread-safe.
+std::string name_of_signal(int signal);
 
 }  // namespace tether

@@ -4,7 +4,7 @@
 #include <utility>
 #include <variant>
 
-#include <tether/base/printable.h>
+#include <tether/base/text.h>
 
 namespace tether {
 

@@ -8,7 +8,7 @@
 
 #include <tether/base/count_page.h>
 #include <tether/os/child_process.h>
-#include <tether/os/memory_file.h>
+#include <tether/os/file_descriptor.h>
 
 /// A program under an emulator with Tether's plugin, which counts the program's work in a page.
 namespace tether::os {

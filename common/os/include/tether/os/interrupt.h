@@ -7,7 +7,7 @@
 #include <thread>
 
 #include <tether/base/time.h>
-#include <tether/os/pipe.h>
+#include <tether/os/file_descriptor.h>
 
 namespace tether::os {
 

@@ -17,4 +17,7 @@ std::filesystem::path find_program(const std::string& name);
 /// not ask the C library for the time: it is static, set-user-ID, or written in Go.
 void require_preloadable(const std::filesystem::path& program);
 
+/// The text quoted so that a shell reads it as one word.
+std::string shell_word(const std::string& text);
+
 }  // namespace tether::os

@@ -175,4 +175,7 @@ auto result_of(const Read& read) -> Result<decltype(read())> {
   }
 }
 
+/// The shortest text that reads back as the same number: "25", "0.1", "1e-05", "nan".
+std::string number_text(double number);
+
 }  // namespace tether::toml

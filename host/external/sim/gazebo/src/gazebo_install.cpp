@@ -11,7 +11,7 @@
 
 #include <tether/base/error.h>
 #include <tether/os/program.h>
-#include <tether/sim_gazebo/gazebo_install.h>
+#include <tether/sim_gazebo/gazebo_simulator.h>
 
 namespace tether::sim {
 

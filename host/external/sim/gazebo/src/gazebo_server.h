@@ -13,7 +13,7 @@
 
 #include <tether/base/time.h>
 #include <tether/os/child_process.h>
-#include <tether/sim_gazebo/gazebo_install.h>
+#include <tether/sim_gazebo/gazebo_simulator.h>
 #include <tether/sim_protocol/connection.h>
 
 namespace tether::sim {

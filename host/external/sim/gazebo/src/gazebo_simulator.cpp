@@ -4,7 +4,6 @@
 #include <utility>
 
 #include <tether/base/error.h>
-#include <tether/sim_gazebo/gazebo_install.h>
 #include <tether/sim_gazebo/gazebo_simulator.h>
 #include <tether/sim_remote/remote_simulator.h>
 

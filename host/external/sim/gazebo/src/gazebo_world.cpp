@@ -4,7 +4,7 @@
 #include <tinyxml2.h>
 
 #include <tether/base/error.h>
-#include <tether/sim_gazebo/gazebo_world.h>
+#include <tether/sim_gazebo/gazebo_simulator.h>
 
 namespace tether::sim {
 namespace {

@@ -4,7 +4,6 @@
 
 #include <tether/base/error.h>
 #include <tether/base_testing/scratch_folder.h>
-#include <tether/sim_gazebo/gazebo_install.h>
 #include <tether/sim_gazebo/gazebo_simulator.h>
 #include <tether/sim_testing/simulator_contract.h>
 

@@ -12,7 +12,7 @@
 #include <tether/base_testing/scratch_folder.h>
 #include <tether/base_testing/thrown_error.h>
 #include <tether/os/child_process.h>
-#include <tether/sim_gazebo/gazebo_install.h>
+#include <tether/sim_gazebo/gazebo_simulator.h>
 
 namespace tether::sim {
 namespace {

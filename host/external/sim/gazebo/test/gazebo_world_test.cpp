@@ -3,7 +3,7 @@
 
 #include <tether/base_testing/scratch_folder.h>
 #include <tether/base_testing/thrown_error.h>
-#include <tether/sim_gazebo/gazebo_world.h>
+#include <tether/sim_gazebo/gazebo_simulator.h>
 
 namespace tether::sim {
 namespace {

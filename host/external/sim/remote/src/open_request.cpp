@@ -8,8 +8,8 @@
 #include <tether/base/error.h>
 #include <tether/sim/bodies.h>
 #include <tether/sim_remote/remote_simulator.h>
-#include <tether/sim_sensing/composite_renderer.h>
 #include <tether/sim_sensing/state_layout.h>
+#include <tether/sim_sensing/view_renderer.h>
 
 namespace tether::sim {
 namespace {

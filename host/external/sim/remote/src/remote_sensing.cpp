@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include <tether/base/printable.h>
+#include <tether/base/text.h>
 #include <tether/sim_protocol/codec.h>
 
 namespace tether::sim {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
-#include <tether/base/printable.h>
+#include <tether/base/text.h>
 
 namespace tether::sim {
 namespace {

@@ -16,12 +16,12 @@
 #include <vector>
 
 #include <tether/base/error.h>
-#include <tether/base/printable.h>
+#include <tether/base/text.h>
 #include <tether/sim/bodies.h>
 #include <tether/sim_remote/remote_simulator.h>
-#include <tether/sim_sensing/composite_renderer.h>
 #include <tether/sim_sensing/sensor_suite.h>
 #include <tether/sim_sensing/state_recorder.h>
+#include <tether/sim_sensing/view_renderer.h>
 
 namespace tether::sim {
 namespace {

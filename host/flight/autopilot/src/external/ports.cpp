@@ -11,7 +11,6 @@
 #include <sys/socket.h>
 
 #include <tether/base/error.h>
-#include <tether/base/system_reason.h>
 
 namespace tether::autopilot {
 namespace {

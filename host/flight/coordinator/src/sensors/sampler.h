@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include <tether/base/step_grid.h>
+#include <tether/base/time.h>
 #include <tether/link/messages.h>
 #include <tether/sim/simulator.h>
 

@@ -6,7 +6,7 @@
 #include <compare>
 #include <set>
 
-#include <tether/base/step_grid.h>
+#include <tether/base/time.h>
 
 namespace tether::coordinator {
 

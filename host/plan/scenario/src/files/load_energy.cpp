@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include <tether/scenario/energy.h>
 #include <tether/scenario/scenario.h>
 #include <tether/toml/table.h>
 

@@ -13,8 +13,7 @@
 #include <zstd.h>
 
 #include <tether/base/error.h>
-#include <tether/base/printable.h>
-#include <tether/base/system_reason.h>
+#include <tether/base/text.h>
 
 // Reads an MCAP file (https://mcap.dev/spec) from front to back, without its indices. InputFile
 // counts bytes and sums CRCs; Decompressor unpacks one chunk at a time; McapReader walks over the

@@ -10,7 +10,6 @@
 #include "obj_check.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <exception>
 #include <limits>
@@ -29,6 +28,7 @@
 #include <assimp/scene.h>
 
 #include <tether/base/error.h>
+#include <tether/base/text.h>
 #include <tether/os/text_file.h>
 
 namespace tether::sim {
@@ -251,9 +251,7 @@ void check_faces(const aiScene& scene, const std::filesystem::path& file) {
 
 // ".obj", whatever the case of the name.
 std::string type_of(const std::filesystem::path& file) {
-  std::string type = file.extension().string();
-  for (char& c : type) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return type;
+  return lower_case(file.extension().string());
 }
 
 // Leaves only the reader of a type: Assimp tries all of its fifty where the content is not what

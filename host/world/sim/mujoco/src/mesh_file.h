@@ -8,7 +8,6 @@
 #include <memory>
 #include <vector>
 
-#include <tether/sim/mesh_key.h>
 #include <tether/sim/world.h>
 
 namespace tether::sim {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <locale>
 #include <map>
@@ -18,6 +17,7 @@
 #include <assimp/scene.h>
 
 #include <tether/base/error.h>
+#include <tether/base/text.h>
 
 namespace tether::sim {
 namespace {
@@ -52,17 +52,7 @@ double number(const aiMaterial& material, const char* key, unsigned type, unsign
 
 // "wood floor.png" of "C:\\pictures\\Wood%20Floor.png".
 std::string file_name(std::string_view text) {
-  text = text.substr(text.find_last_of("/\\") + 1);
-  std::string name;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    unsigned code = static_cast<unsigned char>(text[i]);
-    if (text[i] == '%' && i + 2 < text.size()) {
-      const char* begin = text.data() + i + 1;
-      if (std::from_chars(begin, begin + 2, code, 16).ptr == begin + 2) i += 2;
-    }
-    name += static_cast<char>(std::tolower(static_cast<int>(code)));
-  }
-  return name;
+  return lower_case(unescaped(text.substr(text.find_last_of("/\\") + 1)));
 }
 
 // A picture that is a part of the file: as a PNG or JPEG file, or pixel by pixel.

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <tether/sim_sdf/load_world.h>
-#include <tether/sim_sensing/composite_renderer.h>
+#include <tether/sim_sensing/view_renderer.h>
 
 // Shutter and lens in images of the whole simulator.
 namespace tether::sim {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include <tether/sim_sdf/world_store.h>
+#include <tether/sim_sdf/load_world.h>
 
 namespace tether::sim {
 namespace {

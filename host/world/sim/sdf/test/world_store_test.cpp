@@ -1,6 +1,6 @@
 #include "uav_folder.h"
 
-#include <tether/sim_sdf/world_store.h>
+#include <tether/sim_sdf/load_world.h>
 
 namespace tether::sim {
 namespace {

@@ -13,7 +13,6 @@
 
 #include <tether/base/time.h>
 #include <tether/sim/simulator.h>
-#include <tether/sim/simulator_work.h>
 #include <tether/sim_raster/renderer.h>
 #include <tether/uav/samples.h>
 

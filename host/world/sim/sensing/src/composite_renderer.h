@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include <tether/sim_sensing/composite_renderer.h>
+#include <tether/sim_sensing/view_renderer.h>
 
 namespace tether::sim {
 

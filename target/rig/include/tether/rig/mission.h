@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include <tether/base/result.h>
 #include <tether/base/time.h>
 #include <tether/client/vehicle.h>
 #include <tether/tasks/mission_tasks.h>
@@ -52,5 +53,14 @@ tasks::TaskOutcome fly(const Mission& mission, client::Vehicle& vehicle);
 /// mission, 3 the link was lost.
 int exit_code(const tasks::TaskOutcome& outcome);
 int exit_code(const Failure& failure);
+
+// Mission files (docs/guide/tasks.md): TOML with a `[[task]]` table for each task, whose keys are
+// the options of that task's subcommand with underscores (`--precision-deg` → `precision_deg`),
+// and those of mission::task_keys. Clauses are checked, and are otherwise for the host.
+
+/// Reads a mission file. Fails with kInvalid and one line: FILE:LINE and what is wrong.
+Result<Mission> load_mission(const std::string& path);
+/// The same from the file's text; `path` is for the messages.
+Result<Mission> parse_mission(const std::string& text, const std::string& path);
 
 }  // namespace tether::rig

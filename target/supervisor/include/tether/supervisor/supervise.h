@@ -2,12 +2,33 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
-#include <tether/supervisor/settings.h>
+#include <tether/base/result.h>
+#include <tether/base/time.h>
+#include <tether/link/channel.h>
 
-/// Runs a program of several threads or processes, and stops all of it while the simulation catches
-/// up (docs/guide/threads.md).
 namespace tether::supervisor {
+
+enum class FreezerChoice { kAuto, kCgroup, kSignal };
+
+/// Settings from the command line and the environment.
+struct Settings {
+  std::vector<std::string> command{};  ///< empty if `members` > 0
+  /// Socket of the group to which the command belongs, or that starts `members` commands. Empty:
+  /// the command is alone.
+  std::string group{};
+  int members = 0;  ///< 0: this process has a command
+  FreezerChoice freezer = FreezerChoice::kAuto;
+  bool verbose = false;  ///< not with a group's command, nor `freezer`
+  link::Address coordinator{};
+  std::string token{};
+  std::string uav{};    ///< empty: the one that the program names, or the only one
+  double factor = 1.0;  ///< of the wall clock
+};
+
+// Runs a program of several threads or processes, and stops all of it while the simulation catches
+// up (docs/guide/threads.md).
 
 /// Receives each message to the user, without a final newline. Messages have one line, except the
 /// statistics of `Settings::verbose`.

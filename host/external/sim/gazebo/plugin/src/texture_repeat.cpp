@@ -1,6 +1,6 @@
 #include <numbers>
 
-#include <tether/sim_gazebo_plugin/texture_repeat.h>
+#include <tether/sim_gazebo_plugin/box_mesh.h>
 
 namespace tether::gazebo_plugin {
 

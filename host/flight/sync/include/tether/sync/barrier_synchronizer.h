@@ -7,7 +7,6 @@
 #include <string_view>
 #include <vector>
 
-#include <tether/base/step_grid.h>
 #include <tether/base/time.h>
 
 namespace tether::sync {

@@ -9,12 +9,13 @@
 #include <utility>
 #include <vector>
 
+#include <tether/base/error.h>
 #include <tether/base/time.h>
 #include <tether/computer/clock.h>
 #include <tether/computer/replay.h>
+#include <tether/energy/meter.h>
 #include <tether/mission/mission.h>
 #include <tether/radio/settings.h>
-#include <tether/scenario/energy.h>
 #include <tether/scenario/flight_controller.h>
 #include <tether/scenario/metric.h>
 #include <tether/scenario/profile.h>
@@ -23,9 +24,23 @@
 #include <tether/sim/world.h>
 #include <tether/uav/sensor_timing.h>
 
-/// Scenario files (TOML): everything that determines a run except the seed. All values here are
-/// checked: names are unique, files exist, numbers are in their ranges.
+/// What a UAV needs to fly, and what its battery has (data/energy/*.toml).
 namespace tether::scenario {
+
+struct Energy {
+  std::filesystem::path file;  ///< absolute
+  energy::Model model;         ///< without `battery` if the file has none
+  bool has_battery = false;    ///< else the battery is that of the UAV's SDF file
+  FileLocation rotor_at;
+  FileLocation battery_at;  ///< of the file itself if it has none
+};
+
+/// Reads and checks an energy file (docs/guide/energy.md).
+/// @throws Error(kBadFile) as `load_scenario`, also of a battery that cannot exist.
+Energy load_energy(const std::filesystem::path& file);
+
+// Scenario files (TOML): everything that determines a run except the seed. All values here are
+// checked: names are unique, files exist, numbers are in their ranges.
 
 enum class Policy { kConservativeBarrier, kFreeRunning };
 /// As written in files: "conservative_barrier", "free_running".

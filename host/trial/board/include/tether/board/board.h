@@ -12,7 +12,6 @@
 #include <tether/board/ssh_connection.h>
 #include <tether/os/child_process.h>
 #include <tether/os/file_descriptor.h>
-#include <tether/os/pipe.h>
 #include <tether/scenario/scenario.h>
 
 namespace tether::board {

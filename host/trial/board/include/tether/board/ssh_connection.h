@@ -9,7 +9,6 @@
 #include <string_view>
 #include <vector>
 
-#include <tether/os/captured_run.h>
 #include <tether/os/child_process.h>
 #include <tether/os/temporary_folder.h>
 #include <tether/scenario/target.h>

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include <tether/board/ssh_connection.h>
 #include <tether/record/messages.h>
 
@@ -16,5 +18,15 @@ enum class ProbeDepth {
 record::Readings probe_here(ProbeDepth depth);
 /// Of a board; empty if its shell does not respond or the connection is lost.
 record::Readings probe_board(const SshConnection& connection, ProbeDepth depth);
+
+/// Round trip and bandwidth of the connection to a board.
+struct Bandwidth {
+  double round_trip_s = 0.0;   ///< median, of one byte
+  double to_board_MB_s = 0.0;  ///< 10^6 bytes per second, in the direction of images
+};
+
+/// Measures the connection over SSH, with encryption. The TCP connection of a run is not slower.
+/// None if the board does not respond.
+std::optional<Bandwidth> probe_bandwidth(const SshConnection& connection);
 
 }  // namespace tether::board

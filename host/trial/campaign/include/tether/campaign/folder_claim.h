@@ -1,9 +1,11 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <string_view>
 #include <vector>
 
+#include <tether/base/error.h>
 #include <tether/os/file_descriptor.h>
 
 namespace tether::campaign {
@@ -33,5 +35,11 @@ class FolderClaim {
  private:
   std::vector<os::FileDescriptor> locks_;
 };
+
+/// @throws Error(kUsage) about the folder: results cannot be written there.
+[[noreturn]] inline void refuse_folder(const std::filesystem::path& folder,
+                                       const std::string& why) {
+  throw Error(ErrorCode::kUsage, {folder.string()}, why).about(folder.string());
+}
 
 }  // namespace tether::campaign

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include <tether/sizing/question.h>
+#include <tether/sizing/search.h>
 
 /// The answer where no curve fits: level by level, without assuming how the share falls.
 namespace tether::sizing {

@@ -4,7 +4,6 @@
 #include <span>
 #include <vector>
 
-#include <tether/sizing/question.h>
 #include <tether/sizing/search.h>
 
 /// How many UAVs a board carries: whole levels, each of which is sufficient or not. A board that

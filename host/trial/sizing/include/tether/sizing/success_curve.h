@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include <tether/sizing/question.h>
+#include <tether/sizing/search.h>
 
 /// How the share of successful flights falls with the slowdown of a computer, from few flights.
 ///

@@ -12,7 +12,6 @@
 #include <string_view>
 #include <vector>
 
-#include <tether/sim/mesh_key.h>
 #include <tether/sim/world.h>
 
 namespace tether::sim {

@@ -7,18 +7,38 @@
 #include <string>
 #include <vector>
 
-#include <tether/base/step_grid.h>
 #include <tether/base/time.h>
 #include <tether/energy/meter.h>
+#include <tether/os/clock.h>
 #include <tether/sim/clearance.h>
 #include <tether/sim/contacts.h>
-#include <tether/sim/simulator_work.h>
 #include <tether/sim/world.h>
 #include <tether/uav/multirotor.h>
 #include <tether/uav/samples.h>
 #include <tether/uav/setpoint.h>
 
 namespace tether::sim {
+
+/// What a simulator has computed since its last reset. The times, and how often the forecasts of
+/// `Simulator::expect` were right, may differ between two runs with the same record.
+struct SimulatorWork {
+  Duration stepping{0};             ///< CPU time of steps
+  Duration drawing{0};              ///< CPU time of pictures, of all threads
+  std::uint64_t pictures = 0;       ///< drawn, those in vain among them
+  std::uint64_t drawn_ahead = 0;    ///< of these, begun before they were asked for
+  std::uint64_t drawn_in_vain = 0;  ///< of these, not asked for
+
+  friend bool operator==(const SimulatorWork&, const SimulatorWork&) = default;
+};
+
+/// Measures the CPU time of the thread that it is used on.
+class CpuTimer {
+ public:
+  Duration elapsed() const { return os::read_clock(CLOCK_THREAD_CPUTIME_ID) - begin_; }
+
+ private:
+  Duration begin_ = os::read_clock(CLOCK_THREAD_CPUTIME_ID);
+};
 
 /// The state of the scene at one instant, from which every sensor can be measured later. Opaque;
 /// reuse one object for many captures to avoid allocation.

@@ -6,6 +6,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <tuple>
 #include <variant>
 #include <vector>
 
@@ -368,5 +369,14 @@ std::vector<std::string> model_names(const World& world);
 
 /// The catalogue that the SUT of `uav` receives.
 uav::Catalogue make_catalogue(const World& world, const Uav& uav);
+
+/// What distinguishes two uses of meshes: file, submesh, scale, whether it is centered, and piece.
+using MeshKey = std::tuple<std::filesystem::path, std::string, double, double, double, bool,
+                           std::optional<std::size_t>>;
+
+inline MeshKey key_of(const MeshGeometry& mesh) {
+  return {mesh.file,    mesh.submesh,     mesh.scale.x, mesh.scale.y,
+          mesh.scale.z, mesh.is_centered, mesh.piece};
+}
 
 }  // namespace tether::sim

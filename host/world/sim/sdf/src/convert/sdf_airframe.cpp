@@ -146,10 +146,7 @@ std::set<std::string> read_airframe(const SdfSource& source, const sdf::Model& m
   }
   read_body(source, model.Element(), uav.body, airframe);
 
-  const double max_thrust_N = static_cast<double>(airframe.rotors.size()) *
-                              airframe.thrust_coefficient * airframe.max_rotor_speed_rad_s *
-                              airframe.max_rotor_speed_rad_s;
-  if (max_thrust_N <= airframe.mass_kg * gravity_m_s2) {
+  if (flight_limits(airframe).max_thrust_N <= airframe.mass_kg * gravity_m_s2) {
     refuse(source, declared_by, "has less thrust than weight with all rotors at full speed");
   }
   return motors.joints;

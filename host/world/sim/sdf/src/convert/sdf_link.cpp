@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <optional>
 #include <string_view>
+
+#include <tether/base/text.h>
 
 namespace tether::sim {
 
@@ -109,9 +110,7 @@ sdf::ElementPtr find_path(sdf::ElementPtr element, std::initializer_list<const c
 }
 
 std::string extension_of(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension;
+  return lower_case(file.extension().string());
 }
 
 Vec3 to_vec3(const ignition::math::Vector3d& v) {

@@ -5,11 +5,11 @@
 #include "files/file_kind.h"
 
 #include <algorithm>
-#include <cctype>
 #include <set>
 #include <string>
 #include <string_view>
 
+#include <tether/base/text.h>
 #include <tether/os/text_file.h>
 
 namespace tether::sim {
@@ -20,11 +20,6 @@ namespace {
 
 constexpr std::uintmax_t kLargestMesh = std::uintmax_t{1} << 29;
 const std::set<std::string, std::less<>> kTypes = {".png", ".jpg", ".jpeg", ".mtl", ".bin"};
-
-std::string lower(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
 
 /// As a URI has it.
 std::string without_blanks(const std::string& name) {
@@ -60,8 +55,8 @@ void add_named(const std::string& text, const std::vector<fs::path>& folders,
   std::set<std::string> names;
   for (const fs::path& folder : folders) {
     for (const fs::path& file : entries_of(folder)) {
-      const std::string name = lower(file.filename().string());
-      if (!kTypes.contains(lower(file.extension().string())) || names.contains(name)) continue;
+      const std::string name = lower_case(file.filename().string());
+      if (!kTypes.contains(lower_case(file.extension().string())) || names.contains(name)) continue;
       const bool is_named = text.find(name) != std::string::npos ||
                             text.find(without_blanks(name)) != std::string::npos;
       if (!is_named || !is_file(file)) continue;
@@ -75,12 +70,12 @@ void add_named(const std::string& text, const std::vector<fs::path>& folders,
 
 std::vector<fs::path> mesh_companions(const fs::path& mesh) {
   std::vector<fs::path> found;
-  if (lower(mesh.extension().string()) == ".stl") return found;  // names no files
+  if (lower_case(mesh.extension().string()) == ".stl") return found;  // names no files
   const std::vector<fs::path> folders = folders_around(mesh);
-  add_named(lower(os::read_file(mesh, kLargestMesh)), folders, found);
+  add_named(lower_case(os::read_file(mesh, kLargestMesh)), folders, found);
   for (std::size_t i = 0; i < found.size(); ++i)
-    if (lower(found[i].extension().string()) == ".mtl")
-      add_named(lower(os::read_file(found[i], kLargestMesh)), folders, found);
+    if (lower_case(found[i].extension().string()) == ".mtl")
+      add_named(lower_case(os::read_file(found[i], kLargestMesh)), folders, found);
   return found;
 }
 

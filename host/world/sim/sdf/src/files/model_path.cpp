@@ -16,6 +16,7 @@
 #include <tinyxml2.h>
 
 #include <tether/base/suggest.h>
+#include <tether/base/text.h>
 
 namespace tether::sim {
 
@@ -51,16 +52,7 @@ bool is_on_fuel(const std::string& uri) {
 
 /// "Ground%20Plane" and "ground plane" are one name of Fuel's.
 std::string fuel_name(const std::string& text) {
-  std::string name;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    unsigned code = static_cast<unsigned char>(text[i]);
-    if (text[i] == '%' && i + 2 < text.size()) {
-      const char* begin = text.data() + i + 1;
-      if (std::from_chars(begin, begin + 2, code, 16).ptr == begin + 2) i += 2;
-    }
-    name += static_cast<char>(code >= 'A' && code <= 'Z' ? code + ('a' - 'A') : code);
-  }
-  return name;
+  return lower_case(unescaped(text));
 }
 
 /// The subfolders of that name, in order; all of them if the name is empty.

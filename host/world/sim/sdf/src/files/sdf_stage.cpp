@@ -20,7 +20,6 @@
 #include <tinyxml2.h>
 
 #include <tether/base/error.h>
-#include <tether/base/system_reason.h>
 
 namespace tether::sim {
 

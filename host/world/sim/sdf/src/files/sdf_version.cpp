@@ -6,7 +6,7 @@
 #include <tinyxml2.h>
 
 #include <tether/base/error.h>
-#include <tether/sim_sdf/sdf_version.h>
+#include <tether/sim_sdf/load_world.h>
 
 namespace tether::sim {
 namespace {

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <tether/sim_sdf/sdf_version.h>
+#include <tether/sim_sdf/load_world.h>
 
 namespace tether::sim {
 namespace {

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include <tether/sim/world.h>
 
 namespace tether::sim {
@@ -31,5 +34,37 @@ World load_world(const WorldRequest& request, const WarningSink& warn);
 /// and thread safety as of `load_world`.
 Uav load_uav(const std::filesystem::path& model, const WorldOptions& options, double gravity_m_s2,
              const WarningSink& warn);
+
+/// An external simulator that reads the world's SDF files itself, and the latest SDF version that
+/// it reads.
+struct SdfReader {
+  std::string name;  ///< "Gazebo 11"
+  int major = 1;
+  int minor = 7;
+};
+
+/// @throws Error(kBadFile) with file and line for the first of the world's `sdf_files` with a later
+/// version than the reader's, or with a shape that the reader's version lacks: <capsule> and
+/// <ellipsoid> were introduced in SDF 1.8.
+void check_sdf_version(const World& world, const SdfReader& reader);
+
+/// Worlds that were read, so that trials that differ in the start poses of their UAVs read them
+/// once. Not thread-safe.
+class WorldStore {
+ public:
+  /// As load_world, with the same warnings. Does not notice that a file has changed since it was
+  /// read.
+  World load(const WorldRequest& request, const WarningSink& warn);
+
+ private:
+  struct Stored {
+    WorldRequest request;
+    World world;
+    std::vector<Warning> warnings;
+  };
+  const Stored& find(const WorldRequest& request);
+
+  std::vector<Stored> stored_;
+};
 
 }  // namespace tether::sim
