@@ -40,6 +40,15 @@ std::string target_name(const CalibrateOptions& options, const Calibration& ther
   return options.name.empty() ? profile_name_from(there.machine.name) : options.name;
 }
 
+/// Writes the target's file, and says so after the table.
+Result<std::string> with_target(const std::string& table, const CalibrateOptions& options,
+                                const std::string& target) {
+  if (const Status written = write_whole(options.target, target); !written)
+    return written.failure();
+  return table + "\nWritten: " + options.target + "; use it with: tether run SCENARIO --target " +
+         options.target + "\n";
+}
+
 Result<std::string> compared(const CalibrateOptions& options, const Calibration& here,
                              const Calibration& there) {
   const Result<Comparison> comparison = compare(here, there);
@@ -51,12 +60,8 @@ Result<std::string> compared(const CalibrateOptions& options, const Calibration&
     return invalid("the factor is " + std::to_string(factor) +
                    "; a target's factor must be from 0.001 to 10000");
   }
-  const std::string target = target_text(target_name(options, there), here, there, *comparison);
-  if (const Status written = write_whole(options.target, target); !written) {
-    return written.failure();
-  }
-  return text + "\nWritten: " + options.target + "; use it with: tether run SCENARIO --target " +
-         options.target + "\n";
+  return with_target(text, options,
+                     target_text(target_name(options, there), here, there, *comparison));
 }
 
 Result<std::string> counted(const CalibrateOptions& options, const Calibration& there,
@@ -69,10 +74,8 @@ Result<std::string> counted(const CalibrateOptions& options, const Calibration& 
   if (!target) return invalid(options.against + ": " + target.failure().message);
   const std::string text = prediction_table(*target);
   if (options.target.empty()) return text;
-  const std::string file = counted_target_text(target_name(options, there), *target, there, *work);
-  if (const Status written = write_whole(options.target, file); !written) return written.failure();
-  return text + "\nWritten: " + options.target + "; use it with: tether run SCENARIO --target " +
-         options.target + "\n";
+  return with_target(text, options,
+                     counted_target_text(target_name(options, there), *target, there, *work));
 }
 
 }  // namespace
