@@ -1,8 +1,8 @@
 #include "back_ends.h"
 
-#include "options/simulator_option.h"
-
+#include <algorithm>
 #include <memory>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -11,6 +11,7 @@
 #include <tether/sim/step_check.h>
 #include <tether/sim_gazebo/gazebo_simulator.h>
 #include <tether/sim_mujoco/mujoco_simulator.h>
+#include <tether/sim_protocol/connection.h>
 #include <tether/sim_remote/remote_simulator.h>
 #include <tether/sim_sdf/load_world.h>
 
@@ -71,7 +72,8 @@ std::vector<std::filesystem::path> no_files() {
   return {};
 }
 
-runner::BackEnd back_end(EmbeddedSimulator) {
+/// In this process.
+runner::BackEnd embedded() {
   const auto prepare = [](sim::World world, const sim::WarningSink& warn) -> StartSimulator {
     sim::check_step(world, sim::Controller::kOurs, warn);
     return [make = sim::prepare_mujoco_simulator(std::move(world), warn)](
@@ -82,7 +84,8 @@ runner::BackEnd back_end(EmbeddedSimulator) {
   return {prepare, no_files};
 }
 
-runner::BackEnd back_end(const sim::protocol::Endpoint& endpoint) {
+/// Started by the user, at that address.
+runner::BackEnd external(const sim::protocol::Endpoint& endpoint) {
   const auto prepare = [endpoint](sim::World world,
                                   const sim::WarningSink& warn) -> StartSimulator {
     sim::check_step(world, sim::Controller::kUnknown, warn);
@@ -94,7 +97,8 @@ runner::BackEnd back_end(const sim::protocol::Endpoint& endpoint) {
   return {prepare, no_files};
 }
 
-runner::BackEnd back_end(GazeboSimulator) {
+/// Started and ended by this program.
+runner::BackEnd gazebo() {
   const auto prepare = [](sim::World world, const sim::WarningSink& warn) -> StartSimulator {
     sim::check_step(world, sim::Controller::kOurs, warn);
     sim::check_sdf_version(world, {.name = "Gazebo 11"});
@@ -108,11 +112,23 @@ runner::BackEnd back_end(GazeboSimulator) {
   return {prepare, [] { return sim::find_gazebo().files(); }, true};
 }
 
+struct Row {
+  std::string_view name;
+  runner::BackEnd (*make)();
+};
+constexpr Row kBackEnds[] = {{"mujoco", embedded}, {"gazebo", gazebo}};
+
 }  // namespace
 
 runner::BackEnd find_back_end(const std::string& name) {
-  return std::visit([](const auto& option) { return back_end(option); },
-                    parse_simulator_option(name));
+  const auto* const row = std::ranges::find(kBackEnds, name, &Row::name);
+  if (row != std::end(kBackEnds)) return row->make();
+  if (const auto endpoint = sim::protocol::parse_endpoint(name)) return external(*endpoint);
+  throw Error(ErrorCode::kUsage,
+              fmt::format("unknown simulator \"{}\". Use mujoco, gazebo, or the address of an "
+                          "external simulator, unix:/path or tcp://host:port",
+                          name))
+      .about(name);
 }
 
 }  // namespace tether::app

@@ -5,7 +5,6 @@
 #include "options/engine_option.h"
 #include "options/junit_option.h"
 #include "options/refuse_option.h"
-#include "options/simulator_option.h"
 #include "options/trial_options.h"
 #include "reading/file_kind.h"
 #include "reading/world_options.h"
@@ -67,7 +66,7 @@ scenario::Campaign load(const CampaignOptions& options) {
   for (auto& entry : campaign.scenarios)
     entry.scenario.world_options = world_options(options.reading, shipped);
   if (options.simulator.empty()) return campaign;
-  parse_simulator_option(options.simulator);
+  find_back_end(options.simulator);  // or it says what there is
   for (auto& entry : campaign.scenarios)
     for (auto& condition : entry.scenario.conditions) condition.simulator = options.simulator;
   return campaign;

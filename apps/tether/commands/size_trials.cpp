@@ -4,7 +4,6 @@
 #include "commands/trial_service.h"
 #include "options/engine_option.h"
 #include "options/refuse_option.h"
-#include "options/simulator_option.h"
 #include "options/trial_options.h"
 #include "reading/file_kind.h"
 #include "reading/world_options.h"
@@ -50,7 +49,7 @@ scenario::Scenario load_sized_scenario(const SizeOptions& options,
   scenario::require_decidable(scenario);
   scenario.world_options = world_options(options.reading, shipped);
   if (options.simulator.empty()) return scenario;
-  parse_simulator_option(options.simulator);
+  find_back_end(options.simulator);  // or it says what there is
   for (auto& condition : scenario.conditions) condition.simulator = options.simulator;
   return scenario;
 }
