@@ -36,16 +36,6 @@ Transfer outcome(ssize_t result) {
   return transfer;
 }
 
-/// Repeats a call that a signal interrupted.
-template <class Call>
-ssize_t uninterrupted(Call call) {
-  ssize_t result = 0;
-  do {
-    result = call();
-  } while (result < 0 && errno == EINTR);
-  return result;
-}
-
 /// Waits for one of the poll events, or an end. False: not within `timeout`.
 bool wait_for(int descriptor, short events, Duration timeout) {
   using std::chrono::steady_clock;

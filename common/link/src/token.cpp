@@ -5,15 +5,13 @@
 
 #include <tether/base/error.h>
 #include <tether/link/server.h>
+#include <tether/link/socket.h>
 
 namespace tether::link {
 
 std::string make_token() {
   std::array<unsigned char, 16> bytes{};
-  ssize_t got = 0;
-  do {
-    got = ::getrandom(bytes.data(), bytes.size(), 0);
-  } while (got < 0 && errno == EINTR);
+  const ssize_t got = uninterrupted([&] { return ::getrandom(bytes.data(), bytes.size(), 0); });
   if (got != static_cast<ssize_t>(bytes.size())) {
     throw Error(ErrorCode::kSetup, "cannot create a token: " + reason_of(errno));
   }

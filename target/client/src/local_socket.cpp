@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include <tether/client/exec/local_socket.h>
+#include <tether/link/socket.h>
 
 // Packets between a program and tether-exec. A frame of the link is one packet; a longer one is
 // sent as a sealed memory file, whose descriptor travels in a packet with its length. The seals
@@ -39,15 +40,6 @@ Failure broken(const std::string& why) {
           "protocol violation between the program and tether-exec: " + why};
 }
 
-template <class Call>
-ssize_t uninterrupted(Call call) {
-  ssize_t result = 0;
-  do {
-    result = call();
-  } while (result < 0 && errno == EINTR);
-  return result;
-}
-
 /// Room for one descriptor.
 struct alignas(cmsghdr) Control {
   std::array<char, CMSG_SPACE(sizeof(int))> bytes{};
@@ -64,7 +56,7 @@ os::FileDescriptor take_descriptor(msghdr& header) {
 bool wait_readable(int descriptor, Duration timeout) {
   const Duration::rep ms = std::chrono::ceil<std::chrono::milliseconds>(timeout).count();
   pollfd entry{descriptor, POLLIN, 0};
-  return uninterrupted([&] {
+  return link::uninterrupted([&] {
            return ::poll(&entry, 1, static_cast<int>(std::min<Duration::rep>(ms, 1'000'000'000)));
          }) != 0;
 }
@@ -136,7 +128,7 @@ Status LocalSocket::send_as_memory(const link::FramePieces& pieces) {
   if (!memory) return lost();
   for (const auto piece : {pieces.head, pieces.image, pieces.tail}) {
     for (std::size_t done = 0; done < piece.size();) {
-      const ssize_t written = uninterrupted(
+      const ssize_t written = link::uninterrupted(
           [&] { return ::write(memory.get(), piece.data() + done, piece.size() - done); });
       if (written <= 0) return lost();
       done += static_cast<std::size_t>(written);
@@ -165,7 +157,7 @@ Status LocalSocket::send_packet(const std::uint8_t* data, std::size_t bytes, int
     std::memcpy(CMSG_DATA(rights), &descriptor, sizeof descriptor);
   }
   const ssize_t sent =
-      uninterrupted([&] { return ::sendmsg(socket_.get(), &header, MSG_NOSIGNAL); });
+      link::uninterrupted([&] { return ::sendmsg(socket_.get(), &header, MSG_NOSIGNAL); });
   return sent < 0 ? Status(lost()) : ok_status();
 }
 
@@ -182,7 +174,7 @@ Result<LocalSocket::Packet> LocalSocket::receive(std::optional<Duration> timeout
   header.msg_control = control.bytes.data();
   header.msg_controllen = control.bytes.size();
   const ssize_t received =
-      uninterrupted([&] { return ::recvmsg(socket_.get(), &header, MSG_CMSG_CLOEXEC); });
+      link::uninterrupted([&] { return ::recvmsg(socket_.get(), &header, MSG_CMSG_CLOEXEC); });
   if (received < 0 && errno == EAGAIN)
     return Failure{Failure::Kind::kTimeout, "no message is available"};
   if (received < 0) return lost();
@@ -222,7 +214,7 @@ Result<os::FileDescriptor> listen_local(const std::string& path) {
 }
 
 os::FileDescriptor accept_local(const os::FileDescriptor& listener) {
-  return os::FileDescriptor(static_cast<int>(uninterrupted(
+  return os::FileDescriptor(static_cast<int>(link::uninterrupted(
       [&] { return ::accept4(listener.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK); })));
 }
 

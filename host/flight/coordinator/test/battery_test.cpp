@@ -123,8 +123,7 @@ TEST_F(CoordinatorBattery, ChargesEachUavOfASharedBoardForItsShareOfTheCores) {
     uav.board = 0;
     uav.clock = computer::Clock{.kind = computer::ClockKind::kScripted};
   }
-  coordinator_ = std::make_unique<Coordinator>(*simulator_, recorder_, options_,
-                                               [this] { return now_ += tick_; });
+  remake();
   server_->add_sut(hello(world.uavs[0].name), {finish(milliseconds(30))});
   server_->add_sut(hello("other"), {finish(milliseconds(60))});
   ASSERT_EQ(run().end, RunEnd::kFinished);

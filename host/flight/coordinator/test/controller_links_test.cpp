@@ -98,17 +98,6 @@ class ControllerLinksTest : public CoordinatorTest {
           .link_latency = link.latency};
     remake();
   }
-  void remake() {
-    coordinator_ = std::make_unique<Coordinator>(*simulator_, recorder_, options_,
-                                                 [this] { return now_ += tick_; });
-  }
-  std::string name_of(std::size_t i) const { return simulator_->world().uavs[i].name; }
-  std::vector<link::Reply> replies_to(link::PeerId peer) {
-    std::vector<link::Reply> found;
-    for (const link::Message& message : server_->sent[peer])
-      if (const auto* reply = std::get_if<link::Reply>(&message)) found.push_back(*reply);
-    return found;
-  }
   std::vector<std::uint64_t> numbers_taken(std::size_t uav) const {
     std::vector<std::uint64_t> numbers;
     for (const Taken& taken : taken_[uav]) numbers.push_back(taken.number);

@@ -101,9 +101,13 @@ class CoordinatorTest : public testing::Test {
     options_.uavs.assign(
         uavs,
         {{kCameraTiming, kImuTiming, kRangeTiming}, uav::ConstantDelay{latency_}, clock_, cores_});
+    remake();
+    server_ = std::make_unique<ScriptedServer>();
+  }
+  /// With the options as they are now.
+  void remake() {
     coordinator_ = std::make_unique<Coordinator>(*simulator_, recorder_, options_,
                                                  [this] { return now_ += tick_; });
-    server_ = std::make_unique<ScriptedServer>();
   }
   void set_free_running(double real_time_factor) {
     options_.policy = sync::SyncPolicy::kFreeRunning;
@@ -125,6 +129,13 @@ class CoordinatorTest : public testing::Test {
   }
   const link::Refusal& refusal(link::PeerId peer) {
     return std::get<link::Refusal>(server_->sent.at(peer).back());
+  }
+  std::string name_of(std::size_t i) const { return simulator_->world().uavs[i].name; }
+  std::vector<link::Reply> replies_to(link::PeerId peer) {
+    std::vector<link::Reply> found;
+    for (const link::Message& message : server_->sent[peer])
+      if (const auto* reply = std::get_if<link::Reply>(&message)) found.push_back(*reply);
+    return found;
   }
 
   RunOptions options_;

@@ -30,13 +30,6 @@ class RadioTest : public CoordinatorTest {
       server_->add_sut(hello(name_of(i)), std::move(scripts[i]));
     return run();
   }
-  std::string name_of(std::size_t i) const { return simulator_->world().uavs[i].name; }
-  std::vector<link::Reply> replies_to(link::PeerId peer) {
-    std::vector<link::Reply> found;
-    for (const link::Message& message : server_->sent[peer])
-      if (const auto* reply = std::get_if<link::Reply>(&message)) found.push_back(*reply);
-    return found;
-  }
   void set_channel() {
     options_.radio.model = radio::Model::kLogDistance;
     options_.radio.slot = microseconds(9);

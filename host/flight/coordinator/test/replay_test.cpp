@@ -48,8 +48,7 @@ class Replayed : public CoordinatorTest {
     make();
     options_.uavs[0].given_time = [] { return std::make_unique<Recorded>(); };
     options_.uavs[0].replayed_from = record::ReplayInfo{"a.timing", "exact", "", "pi", "0a"};
-    coordinator_ = std::make_unique<Coordinator>(*simulator_, recorder_, options_,
-                                                 [this] { return now_ += tick_; });
+    remake();
   }
   link::PeerId join(const std::string& build_id = "0a") {
     link::Hello own = hello("", computer::ClockKind::kReplayed);

@@ -68,8 +68,7 @@ TEST_F(SetpointsTest, JointsAloneLeaveWhatIsFlown) {
   world.uavs[0].joints = {{"pitch", {}, {0, 1, 0}, -1, 1, 2}};
   make(std::move(world));
   options_.uavs[0].setpoint_loss = {milliseconds(4), uav::LossAction::kBrake};
-  coordinator_ = std::make_unique<Coordinator>(*simulator_, recorder_, options_,
-                                               [this] { return now_ += tick_; });
+  remake();
   const uav::Setpoint down{.mask = uav::kJoints, .joints_rad = {0.5}};
   run({follow(milliseconds(2), {{Duration(0), there(1)}, {milliseconds(3), there(2)}}),
        follow(milliseconds(2), {{Duration(0), down}}), sleep({}, milliseconds(3)),
@@ -90,8 +89,7 @@ TEST_F(SetpointsTest, ALostLinkHasTheEffectOfTheScenario) {
   for (const auto& [action, expected] : cases) {
     make();
     options_.uavs[0].setpoint_loss = {milliseconds(5), action};
-    coordinator_ = std::make_unique<Coordinator>(*simulator_, recorder_, options_,
-                                                 [this] { return now_ += tick_; });
+    remake();
     run({{milliseconds(10), link::SetVelocity{{{1, 0, 0}, 0}}},
          sleep({}, milliseconds(20)),
          turn(Duration(0), 1.0),
@@ -116,8 +114,7 @@ TEST_F(SetpointsTest, DrawnLatenciesAreKeyedAndKeepTheOrder) {
     make();
     options_.uavs[0].command_latency =
         uav::EmpiricalDelay{{microseconds(200), microseconds(5'300), microseconds(20'000)}};
-    coordinator_ = std::make_unique<Coordinator>(*simulator_, recorder_, options_,
-                                                 [this] { return now_ += tick_; });
+    remake();
     ScriptedServer::Script script;
     for (int i = 0; i < 30; ++i) script.push_back(turn(milliseconds(1), 0.01 * i));
     script.push_back(sleep({}, milliseconds(30)));

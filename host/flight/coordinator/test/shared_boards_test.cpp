@@ -28,15 +28,10 @@ class SharedBoard : public CoordinatorTest {
     }
     remake();
   }
-  void remake() {
-    coordinator_ = std::make_unique<Coordinator>(*simulator_, recorder_, options_,
-                                                 [this] { return now_ += tick_; });
-  }
-  std::string name(std::size_t uav) const { return simulator_->world().uavs[uav].name; }
   std::vector<record::Interaction> of(std::size_t uav) const {
     std::vector<record::Interaction> own;
     std::ranges::copy_if(recorder_.interactions, std::back_inserter(own),
-                         [&](const auto& entry) { return entry.uav == name(uav); });
+                         [&](const auto& entry) { return entry.uav == name_of(uav); });
     return own;
   }
 };
@@ -45,8 +40,8 @@ TEST_F(SharedBoard, ComputingTakesAsManyTimesAsLongAsProgramsCompute) {
   make_shared(2, 1);
   options_.uavs[1].computer = "obc";
   remake();
-  server_->add_sut(hello(name(0)), {turn(milliseconds(3), 0.1), finish(milliseconds(1))});
-  server_->add_sut(hello(name(1)), {turn(milliseconds(5), 0.1), finish(milliseconds(0))});
+  server_->add_sut(hello(name_of(0)), {turn(milliseconds(3), 0.1), finish(milliseconds(1))});
+  server_->add_sut(hello(name_of(1)), {turn(milliseconds(5), 0.1), finish(milliseconds(0))});
   ASSERT_EQ(run().end, RunEnd::kFinished);
   EXPECT_EQ(of(0)[0].request_at, us(6000));
   EXPECT_EQ(of(0)[0].computed, milliseconds(3));
@@ -62,7 +57,7 @@ TEST_F(SharedBoard, PinnedProgramsShareTheirCoreOnly) {
   for (const std::size_t uav : {0U, 1U, 2U}) options_.uavs[uav].pinned_core = 0;
   remake();
   for (std::size_t uav = 0; uav < 4; ++uav)
-    server_->add_sut(hello(name(uav)), {finish(milliseconds(2))});
+    server_->add_sut(hello(name_of(uav)), {finish(milliseconds(2))});
   ASSERT_EQ(run().end, RunEnd::kFinished);
   EXPECT_EQ(of(2)[0].request_at, us(6000));
   EXPECT_EQ(of(3)[0].request_at, us(2000));
@@ -74,7 +69,7 @@ TEST_F(SharedBoard, TheRecordHasTheBoardOfAProgramThatIsAloneOnItsCore) {
   options_.uavs[1].pinned_core = 0;
   remake();
   for (std::size_t uav = 0; uav < 3; ++uav)
-    server_->add_sut(hello(name(uav)), {finish(milliseconds(2))});
+    server_->add_sut(hello(name_of(uav)), {finish(milliseconds(2))});
   ASSERT_EQ(run().end, RunEnd::kFinished);
   EXPECT_EQ(of(0)[0].request_at, us(4000));
   EXPECT_EQ(of(1)[0].request_at, us(2000));
@@ -87,7 +82,7 @@ TEST_F(SharedBoard, ABoardOnWhichNobodyWaitsIsNotInTheRecord) {
   options_.uavs[1].pinned_core = 1;
   remake();
   for (std::size_t uav = 0; uav < 2; ++uav)
-    server_->add_sut(hello(name(uav)), {finish(milliseconds(2))});
+    server_->add_sut(hello(name_of(uav)), {finish(milliseconds(2))});
   ASSERT_EQ(run().end, RunEnd::kFinished);
   EXPECT_EQ(recorder_.header.boards.size(), 0u);
   EXPECT_EQ(of(0)[0].computed, std::nullopt);
@@ -100,8 +95,8 @@ TEST_F(SharedBoard, AFlooderLeavesItsShareOfTheCoresToTheOthers) {
     make_shared(2, 1);
     const Duration pause = in_one_step ? Duration(0) : Duration(microseconds(2));
     const Act send{pause, link::SendMessage{"", std::vector<std::uint8_t>(60'000)}};
-    server_->add_sut(hello(name(0)), Script(4'000, send));
-    server_->add_sut(hello(name(1)), {turn(milliseconds(200), 0.1), finish(milliseconds(100))});
+    server_->add_sut(hello(name_of(0)), Script(4'000, send));
+    server_->add_sut(hello(name_of(1)), {turn(milliseconds(200), 0.1), finish(milliseconds(100))});
     const RunReport report = run();
     EXPECT_EQ(report.end, RunEnd::kFlooded) << report.reason;
     EXPECT_TRUE(report.suts.at(1).finish) << "the other one is unharmed";
@@ -110,8 +105,8 @@ TEST_F(SharedBoard, AFlooderLeavesItsShareOfTheCoresToTheOthers) {
 
 TEST_F(SharedBoard, SleepsAndAnnotationsAreOnTheTimeLineOfTheBoard) {
   make_shared(2, 1);
-  const link::PeerId peer = server_->add_sut(hello(name(0)), {});
-  server_->add_sut(hello(name(1)), {finish(milliseconds(100))});
+  const link::PeerId peer = server_->add_sut(hello(name_of(0)), {});
+  server_->add_sut(hello(name_of(1)), {finish(milliseconds(100))});
   server_->deliver(peer, link::Annotation{us(1000), "task", "{}"});
   bool is_asleep = false, is_woken = false;
   hooks_.should_stop = [&]() -> std::optional<Ending> {
@@ -131,8 +126,8 @@ TEST_F(SharedBoard, SleepsAndAnnotationsAreOnTheTimeLineOfTheBoard) {
 
 TEST_F(SharedBoard, AStampBeforeAnEarlierProgressIsAViolation) {
   make_shared(2, 1);
-  const link::PeerId peer = server_->add_sut(hello(name(0)), {});
-  server_->add_sut(hello(name(1)), {finish(milliseconds(1))});
+  const link::PeerId peer = server_->add_sut(hello(name_of(0)), {});
+  server_->add_sut(hello(name_of(1)), {finish(milliseconds(1))});
   server_->deliver(peer, link::Progress{us(500)});
   server_->deliver(peer, request(1, us(300), link::Finish{true, "", ""}));
   ASSERT_EQ(run().end, RunEnd::kFinished);
@@ -144,7 +139,7 @@ TEST_F(SharedBoard, IsNotSharedInFreeRunning) {
   set_free_running(1.0);
   make_shared(2, 1);
   for (const std::size_t uav : {0U, 1U})
-    server_->add_sut(hello(name(uav)), {finish(milliseconds(2))});
+    server_->add_sut(hello(name_of(uav)), {finish(milliseconds(2))});
   ASSERT_EQ(run().end, RunEnd::kFinished);
   EXPECT_EQ(recorder_.header.boards.size(), 0u);
 }
@@ -153,9 +148,9 @@ TEST_F(SharedBoard, IsNotModelledIfItIsRealAndThenNeedsConcurrentSuts) {
   make_shared(2, 1);
   options_.boards = {{.name = "obc", .cores = 0, .is_real = true}};
   remake();
-  const link::PeerId serial = server_->add_sut(hello(name(0)), {});
+  const link::PeerId serial = server_->add_sut(hello(name_of(0)), {});
   for (const std::size_t uav : {0U, 1U})
-    server_->add_threads(hello(name(uav)), {{finish(milliseconds(3))}});
+    server_->add_threads(hello(name_of(uav)), {{finish(milliseconds(3))}});
   ASSERT_EQ(run().end, RunEnd::kFinished);
   EXPECT_EQ(refusal(serial).reason, link::Refusal::Reason::kBadRequest);
   EXPECT_EQ(of(0)[0].request_at, us(3000));
@@ -193,7 +188,8 @@ TEST_F(SharedBoard, InstantsAndRecordsAreTheSameInAnyOrderOfMessages) {
     std::string first;
     for (std::uint64_t order = 0; order < 4; ++order) {
       make_shared(uavs, cores);
-      for (std::size_t uav = 0; uav < uavs; ++uav) server_->add_sut(hello(name(uav)), scripts[uav]);
+      for (std::size_t uav = 0; uav < uavs; ++uav)
+        server_->add_sut(hello(name_of(uav)), scripts[uav]);
       KeyedRandom choice({.seed = seed, .index = order});
       server_->choose = [&](std::size_t waiting) { return choice.bits() % waiting; };
       ASSERT_EQ(run().end, RunEnd::kFinished);

@@ -223,17 +223,13 @@ class SharedRadio : public CoordinatorTest {
     }
     remake();
     for (std::size_t i = 0; i < fleet.scripts.size(); ++i)
-      server_->add_sut(hello(name(i)), fleet.scripts[i]);
+      server_->add_sut(hello(name_of(i)), fleet.scripts[i]);
   }
-  void remake() {
-    coordinator_ = std::make_unique<Coordinator>(*simulator_, recorder_, options_,
-                                                 [this] { return now_ += tick_; });
-  }
-  std::string name(std::size_t uav) const { return simulator_->world().uavs[uav].name; }
   std::vector<TimedCall> calls_of(std::size_t uav) const {
     std::vector<TimedCall> calls;
     for (const record::Interaction& entry : recorder_.interactions)
-      if (entry.uav == name(uav)) calls.push_back({to_ns(entry.request_at), to_ns(entry.reply_at)});
+      if (entry.uav == name_of(uav))
+        calls.push_back({to_ns(entry.request_at), to_ns(entry.reply_at)});
     return calls;
   }
 };

@@ -6,6 +6,8 @@
 #include <ostream>
 #include <set>
 #include <stdexcept>
+#include <string>
+#include <utility>
 
 #include <tether/audit/audit.h>
 
@@ -68,6 +70,22 @@ inline record::Interaction& where(record::Record& record,
 
 inline void set_lag(record::Interaction& m) {
   m.lag = lag(m.request_at, m.st_at_arrival);
+}
+
+/// At these times of a SUT that is held from its request to the reply.
+inline Entry call(std::string uav, std::string kind, std::int64_t request_ns, std::int64_t reply_ns,
+                  std::uint64_t sequence) {
+  record::Interaction m;
+  m.uav = std::move(uav);
+  m.kind = std::move(kind);
+  m.sequence = sequence;
+  m.request_at = from_ns<ExecTime>(request_ns);
+  m.reply_at = from_ns<ExecTime>(reply_ns);
+  m.st_at_arrival = from_ns<SimTime>(floor_ns(request_ns, kStep.count()));
+  m.st_at_release = from_ns<SimTime>(floor_ns(reply_ns, kStep.count()));
+  m.grid_error = same_instant(m.reply_at) - m.st_at_release;
+  set_lag(m);
+  return {m.st_at_release, 0, m};
 }
 
 /// The rules that have findings.

@@ -17,21 +17,6 @@ using record::Record;
 constexpr std::int64_t kControllerPeriod_ns = 4'000'000, kLatency_ns = 300'000;
 constexpr std::uint64_t kBytes = 40;
 
-record::Logged<record::Interaction> call_of(std::string kind, std::int64_t request_ns,
-                                            std::int64_t reply_ns, std::uint64_t sequence) {
-  record::Interaction m;
-  m.uav = "a";
-  m.kind = std::move(kind);
-  m.sequence = sequence;
-  m.request_at = from_ns<ExecTime>(request_ns);
-  m.reply_at = from_ns<ExecTime>(reply_ns);
-  m.st_at_arrival = from_ns<SimTime>(floor_ns(request_ns, kStep.count()));
-  m.st_at_release = from_ns<SimTime>(floor_ns(reply_ns, kStep.count()));
-  m.grid_error = same_instant(m.reply_at) - m.st_at_release;
-  set_lag(m);
-  return {m.st_at_release, 0, m};
-}
-
 // Each 1.3 ms the SUT sends; the controller answers each message at the step that takes it, with
 // two messages in one, and the SUT receives the answer to the last one.
 Record flight(double baud = 0.0) {
@@ -55,7 +40,7 @@ Record flight(double baud = 0.0) {
   std::uint64_t answers = 0;
   for (std::uint64_t i = 1; i <= 12; ++i) {
     const auto sent_ns = static_cast<std::int64_t>(i) * 1'300'000;
-    record.interactions.push_back(call_of("send", sent_ns, sent_ns, i));
+    record.interactions.push_back(call("a", "send", sent_ns, sent_ns, i));
     AutopilotMessage to;
     to.uav = "a";
     to.to_controller = true;
@@ -79,11 +64,11 @@ Record flight(double baud = 0.0) {
     from.part = 1;
     record.autopilot.push_back({logged, 0, from});
   }
-  auto received = call_of("receive", 16'000'000, 16'000'000, 13);
+  auto received = call("a", "receive", 16'000'000, 16'000'000, 13);
   received.message.receive_until = from_ns<ExecTime>(40'000'000);
   received.message.received = {"autopilot", 1, record.autopilot[1].message.at};
   record.interactions.push_back(received);
-  record.interactions.push_back(call_of("finish", 30'000'000, 30'000'000, 14));
+  record.interactions.push_back(call("a", "finish", 30'000'000, 30'000'000, 14));
   for (std::size_t i = 0; i < record.interactions.size(); ++i) record.interactions[i].order = i;
   record.footer.emplace();
   record.footer->end = "finished";

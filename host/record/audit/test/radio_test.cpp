@@ -9,21 +9,6 @@ namespace {
 
 using record::Record;
 
-record::Logged<record::Interaction> call(std::string uav, std::string kind, std::int64_t request_ns,
-                                         std::int64_t reply_ns, std::uint64_t sequence) {
-  record::Interaction m;
-  m.uav = std::move(uav);
-  m.kind = std::move(kind);
-  m.sequence = sequence;
-  m.request_at = from_ns<ExecTime>(request_ns);
-  m.reply_at = from_ns<ExecTime>(reply_ns);
-  m.st_at_arrival = from_ns<SimTime>(floor_ns(request_ns, kStep.count()));
-  m.st_at_release = from_ns<SimTime>(floor_ns(reply_ns, kStep.count()));
-  m.grid_error = same_instant(m.reply_at) - m.st_at_release;
-  set_lag(m);
-  return {m.st_at_release, 0, m};
-}
-
 // "a" sends at 1.5 ms; it arrives at "b" at 1.7 ms, who receives it, and then nothing until 4 ms.
 Record exchange() {
   Record record;

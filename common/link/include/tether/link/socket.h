@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cerrno>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -34,6 +35,14 @@ class Descriptor {
  private:
   int value_ = -1;
 };
+
+/// Repeats a system call that a signal interrupted.
+template <class Call>
+auto uninterrupted(Call call) {
+  auto result = call();
+  while (result < 0 && errno == EINTR) result = call();
+  return result;
+}
 
 /// Longer limits are reduced to this, so that deadlines do not overflow.
 inline constexpr Duration kLongestTimeout = std::chrono::hours(24 * 365);
