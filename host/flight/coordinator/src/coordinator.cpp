@@ -26,8 +26,6 @@ constexpr Duration kPaceCredit = std::chrono::milliseconds(50);
 constexpr Duration kFall = std::chrono::seconds(2);
 // A SUT sends no more at once, unless it floods the coordinator.
 constexpr int kMostPolls = 8;
-// How often the record is flushed, so that a killed run leaves most of it.
-constexpr Duration kFlushPeriod = std::chrono::seconds(1);
 
 // In free running the state at the next read is not known, and nothing is drawn ahead.
 Sampler::Sensor make_sensor(const sim::Sensor& sensor, const std::string& uav,
@@ -141,8 +139,7 @@ RunReport Coordinator::run(link::Server& server, const RunHooks& hooks) {
 
 Coordinator::Impl::Impl(sim::Simulator& simulator, record::Recorder& recorder, RunOptions options,
                         std::function<WallTime()> host_clock)
-    : simulator_(&simulator),
-      options_(checked(std::move(options), simulator)),
+    : options_(checked(std::move(options), simulator)),
       host_clock_(std::move(host_clock)),
       log_(recorder),
       times_(options_, simulator.grid()),
@@ -151,18 +148,17 @@ Coordinator::Impl::Impl(sim::Simulator& simulator, record::Recorder& recorder, R
       sessions_(make_sessions(simulator, options_)),
       radio_(options_.radio, options_.seed, names_of(world()), log_),
       controllers_(options_.uavs, names_of(world()), log_),
-      time_limit_(simulator.grid().ceil(SimTime(options_.time_limit))),
-      started_(host_clock_()),
-      flushed_(started_),
-      watchdog_({time_limit_, options_.connect_limit, options_.hang_limit}, sessions_.size(),
-                started_),
+      watchdog_({.st = grid().ceil(SimTime(options_.time_limit)),
+                 .connect = options_.connect_limit,
+                 .hang = options_.hang_limit},
+                sessions_.size(), host_clock_()),
       looks_(sessions_.size(), times_) {}
 
 RunReport Coordinator::Impl::run(link::Server& server, const RunHooks& hooks) {
-  server_ = &server;
+  peers_.begin(server, hooks.on_refused);
   hooks_ = hooks;
   watchdog_.moved(host_clock_());
-  while (!ended_) {
+  while (!ends_.is_over()) {
     try {
       turn();
       watch();
@@ -177,10 +173,10 @@ RunReport Coordinator::Impl::run(link::Server& server, const RunHooks& hooks) {
 }
 
 void Coordinator::Impl::turn() {
-  const bool moved = running_ && advance();
+  const bool moved = is_running() && advance();
   const Duration wait = pace_ ? std::min(kIdleWait, pace_->wait_for(grid().dt())) : kIdleWait;
   for (const link::Event& event :
-       server_->poll(moved ? Duration(0) : std::min(wait, looks_.until_due(host_clock_))))
+       peers_.poll(moved ? Duration(0) : std::min(wait, looks_.until_due(host_clock_))))
     on_event(event);
   look_at_suts();
 }
@@ -194,31 +190,31 @@ std::vector<std::string> Coordinator::Impl::peers_of(const Session& session) con
 // Called when every SUT has joined. ST and every ET begin at 0.
 void Coordinator::Impl::start() {
   stepper_.reset(options_.seed);
-  started_ = host_clock_();
-  watchdog_.begin(started_);
+  const WallTime now = host_clock_();
+  watchdog_.begin(now);
   for (const Session& session : sessions_)
-    times_.begin(session.uav, session.hello, session.cores, started_);
+    times_.begin(session.uav, session.hello, session.cores, now);
   const bool repeats = std::ranges::all_of(options_.uavs, [](const UavOptions& uav) {
     return !uav.controller || uav.controller->repeats;
   });
+  began_ = now;
   log_.begin(make_header(), repeats && times_.repeats());
-  running_ = true;
   if (options_.real_time_factor > 0.0)
-    pace_.emplace(options_.real_time_factor, std::max(kPaceCredit, 2 * grid().dt()), started_);
-  for (const Session& session : sessions_) computes_from(session.uav, ExecTime{}, started_);
+    pace_.emplace(options_.real_time_factor, std::max(kPaceCredit, 2 * grid().dt()), now);
+  for (const Session& session : sessions_) computes_from(session.uav, ExecTime{}, now);
   stepper_.act();
   log_.race_again();
-  looks_.begin(hooks_.threads_of, started_);
+  looks_.begin(hooks_.threads_of, now);
   const bool is_free = options_.policy == sync::SyncPolicy::kFreeRunning;
   for (const Session& session : sessions_)
-    server_->send(session.peer,
-                  link::Welcome{.catalogue = catalogue_of(world(), session,
-                                                          stepper_.has_battery(session.uav)),
-                                .free_running = is_free,
-                                .start = ExecTime{},
-                                .computing = session.time_given(),
-                                .peers = peers_of(session),
-                                .real_time_factor = is_free ? options_.real_time_factor : 1.0});
+    peers_.send(session.peer,
+                link::Welcome{
+                    .catalogue = catalogue_of(world(), session, stepper_.has_battery(session.uav)),
+                    .free_running = is_free,
+                    .start = ExecTime{},
+                    .computing = session.time_given(),
+                    .peers = peers_of(session),
+                    .real_time_factor = is_free ? options_.real_time_factor : 1.0});
 }
 
 // Advances ST; false if it must not advance now.
@@ -240,22 +236,22 @@ bool Coordinator::Impl::advance() {
 void Coordinator::Impl::watch_flight() {
   const auto plan = [this](SimTime cause, RunEnd how, std::string reason) {
     const SimTime at = grid().ceil(cause) + kStepsPerTurn * grid().dt();
-    if (!planned_end_ || at < planned_end_->at) planned_end_ = {at, how, std::move(reason)};
+    ends_.plan(at, {how, std::move(reason)});
   };
-  if (const auto exhausted = planned_end_ ? std::nullopt : stepper_.exhausted())
+  if (const auto exhausted = ends_.is_planned() ? std::nullopt : stepper_.exhausted())
     plan(exhausted->at + kFall, RunEnd::kBatteryEmpty,
          fmt::format("the battery of UAV \"{}\" was empty at ST {:.3f} s",
                      world().uavs[exhausted->uav].name, to_seconds(exhausted->at)));
   if (hooks_.killed)
     if (auto killed = hooks_.killed())
       plan(killed->first, RunEnd::kKilled, std::move(killed->second));
-  if (planned_end_ && st() >= planned_end_->at) end({planned_end_->how, planned_end_->reason});
+  ends_.reached(st());
 }
 
 // How far ST may advance in this turn.
 SimTime Coordinator::Impl::next_stop() const {
-  return std::min({times_.limit(), time_limit_, planned_end_ ? planned_end_->at : SimTime::max(),
-                   stepper_.next_due(), next_event_step(), st() + kStepsPerTurn * grid().dt()});
+  return std::min({times_.limit(), watchdog_.st_limit(), ends_.limit(), stepper_.next_due(),
+                   next_event_step(), st() + kStepsPerTurn * grid().dt()});
 }
 
 // How much of that the pace allows.
@@ -270,22 +266,15 @@ SimTime Coordinator::Impl::paced(SimTime target, WallTime now) {
   return target;
 }
 
-void Coordinator::Impl::end(const Ending& ending) {
-  if (!ended_) ended_ = {ending.how, printable(ending.reason), printable(ending.seen)};
-}
-
 // Limits of WT, status and requests of the caller. No decision of the barrier depends on them.
 void Coordinator::Impl::watch() {
   const WallTime now = host_clock_();
   if (!watchdog_.is_due(now)) return;
-  if (running_ && now - flushed_ >= kFlushPeriod) {
-    flushed_ = now;
-    log_.flush();
-  }
+  if (is_running()) log_.flush(now);
   for (Session& session : sessions_) {
     if (!session.joined()) hear_emulated_start(session, now);
     if (!session.joined() || time_of(session).has_left()) continue;
-    const std::uint64_t moved = server_->moved_bytes(session.peer);
+    const std::uint64_t moved = peers_.moved_bytes(session.peer);
     if (std::exchange(session.moved_bytes, moved) != moved) watchdog_.heard(session.uav, now);
     if (!hooks_.computed_by || session.hello.clock.kind != computer::ClockKind::kCounted) continue;
     const Duration computed = hooks_.computed_by(session.uav);
@@ -313,7 +302,7 @@ void Coordinator::Impl::end_endless(Session& session) {
   const ExecTime bound = time.resumed_at();
   if (std::exchange(session.last_bound, bound) != bound || !time.is_computing())
     session.computed_before = session.computed;
-  const auto limit = from_ns<ExecTime>(to_ns(time_limit_));
+  const auto limit = from_ns<ExecTime>(to_ns(watchdog_.st_limit()));
   const Duration computed = session.computed - session.computed_before - kMostUncharged;
   if (time.is_computing() && bound < limit && computed > limit - bound)
     time.progress({.reached = limit});
@@ -322,8 +311,8 @@ void Coordinator::Impl::end_endless(Session& session) {
 // A program that waits in small steps computes a little between them, and that is a sign of life.
 void Coordinator::Impl::look_at_suts() {
   const auto looks = looks_.look(host_clock_);
-  for (int i = 0; !looks.empty() && i < kMostPolls && !ended_; ++i) {
-    const auto events = server_->poll(Duration(0));
+  for (int i = 0; !looks.empty() && i < kMostPolls && !ends_.is_over(); ++i) {
+    const auto events = peers_.poll(Duration(0));
     if (events.empty()) break;
     for (const link::Event& event : events) on_event(event);
   }
@@ -337,7 +326,7 @@ void Coordinator::Impl::look_at_suts() {
 }
 
 void Coordinator::Impl::stop_if_asked() {
-  if (ended_ || !hooks_.should_stop) return;
+  if (ends_.is_over() || !hooks_.should_stop) return;
   if (const auto stop = hooks_.should_stop()) end(*stop);
 }
 
@@ -366,11 +355,11 @@ std::vector<Party> Coordinator::Impl::parties(WallTime now) const {
 RunStatus Coordinator::Impl::status(WallTime now) const {
   RunStatus status{.st = st(),
                    .et = std::nullopt,
-                   .wall = running_ ? now - started_ : Duration(0),
+                   .wall = began_ ? now - *began_ : Duration(0),
                    .interactions = log_.footer().interactions,
                    .images = log_.images(),
                    .waiting_for = {},
-                   .blocked = ended_ ? "" : watchdog_.blocked(parties(now), st(), now)};
+                   .blocked = ends_.is_over() ? "" : watchdog_.blocked(parties(now), st(), now)};
   for (const Session& session : sessions_)
     if (session.joined()) ++status.joined;
   ExecTime least = ExecTime::max();
@@ -387,28 +376,28 @@ RunStatus Coordinator::Impl::status(WallTime now) const {
 
 // Notifies the SUTs that are still connected, then completes the record.
 RunReport Coordinator::Impl::close_run() {
-  if (running_ && ended_->how != RunEnd::kSimulatorLost) stepper_.log_contacts();
-  if (running_) {
+  const Ending& ended = ends_.how();
+  if (is_running() && ended.how != RunEnd::kSimulatorLost) stepper_.log_contacts();
+  if (is_running()) {
     radio_.log_in_transit(st(), grid());
     controllers_.log_in_transit(st());
   }
   record::Footer& footer = log_.footer();
-  RunReport report{
-      .end = ended_->how,
-      .reason = ended_->seen.empty() ? ended_->reason : ended_->reason + ": " + ended_->seen,
-      .causes_at = ended_->reason.size(),
-      .st = st(),
-      .began = running_,
-      .wall = running_ ? host_clock_() - started_ : Duration(0),
-      .interactions = footer.interactions,
-      .images = log_.images(),
-      .causality_violations = footer.causality_violations,
-      .largest_lag = footer.largest_lag,
-      .largest_grid_error = footer.largest_grid_error,
-      .stops = footer.stops,
-      .largest_overshoot = footer.largest_overshoot,
-      .suts = {},
-      .lost_uav = ended_->lost_uav};
+  RunReport report{.end = ended.how,
+                   .reason = ended.seen.empty() ? ended.reason : ended.reason + ": " + ended.seen,
+                   .causes_at = ended.reason.size(),
+                   .st = st(),
+                   .began = is_running(),
+                   .wall = began_ ? host_clock_() - *began_ : Duration(0),
+                   .interactions = footer.interactions,
+                   .images = log_.images(),
+                   .causality_violations = footer.causality_violations,
+                   .largest_lag = footer.largest_lag,
+                   .largest_grid_error = footer.largest_grid_error,
+                   .stops = footer.stops,
+                   .largest_overshoot = footer.largest_overshoot,
+                   .suts = {},
+                   .lost_uav = ended.lost_uav};
   for (const Session& session : sessions_) {
     if (session.joined() && !time_of(session).has_left())
       refuse(session.peer, link::Refusal::Reason::kRunEnded, "the run has ended: " + report.reason);
@@ -418,7 +407,7 @@ RunReport Coordinator::Impl::close_run() {
                            .et = time_of(session).bound(),
                            .looks = looks_.of(session.uav)});
   }
-  if (!running_) return report;
+  if (!is_running()) return report;
 
   footer.end = name(report.end);
   footer.reason = report.reason;

@@ -1,7 +1,9 @@
 #pragma once
 
 #include "controller_links.h"
+#include "ends.h"
 #include "looks.h"
+#include "peers.h"
 #include "radio_traffic.h"
 #include "run_log.h"
 #include "session.h"
@@ -9,7 +11,6 @@
 #include "time/timelines.h"
 #include "watchdog.h"
 
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -32,18 +33,13 @@ namespace tether::coordinator {
 ///     Watchdog     whether the run takes too long, and who is blocked on whom
 ///     ThreadLooks  what the threads of SUTs do meanwhile
 ///     RunLog       what the record has of all this, and in which order
+///     Peers        who is connected
+///     Ends         how the run ends
 ///
 /// A request passes them in this order: it is validated; it may wait until its instant is known
 /// (settle); it is planned (plan.cpp) and held by its Timeline; ST advances to its reply's
 /// timestamp; release_ready sends the reply and logs the interaction. A message between UAVs that
 /// arrives meanwhile can move a reply to an earlier instant (deliver).
-/// How the run ends once ST is there.
-struct PlannedEnd {
-  SimTime at;
-  RunEnd how = RunEnd::kKilled;
-  std::string reason;
-};
-
 class Coordinator::Impl {
  public:
   Impl(sim::Simulator& simulator, record::Recorder& recorder, RunOptions options,
@@ -69,7 +65,6 @@ class Coordinator::Impl {
   void end_endless(Session& session);
   void look_at_suts();
   void stop_if_asked();
-  void end(const Ending& ending);
   RunReport close_run();
   RunStatus status(WallTime now) const;
 
@@ -87,8 +82,9 @@ class Coordinator::Impl {
   Standing standing(const Session& session) const;
   bool settle_boards();
   void begin(Sent sent);
-  Session* find(link::PeerId peer);
-  void refuse(link::PeerId peer, link::Refusal::Reason reason, const std::string& message);
+  void refuse(link::PeerId peer, link::Refusal::Reason reason, const std::string& message) {
+    peers_.refuse(peer, reason, message);
+  }
 
   // Events.
   std::optional<sync::SutTime> next_event() const;
@@ -107,35 +103,27 @@ class Coordinator::Impl {
 
   Timeline& time_of(const Session& session) { return times_[session.uav]; }
   const Timeline& time_of(const Session& session) const { return times_[session.uav]; }
-  const sim::World& world() const { return simulator_->world(); }
+  const sim::World& world() const { return stepper_.world(); }
   const StepGrid& grid() const { return stepper_.grid(); }
   SimTime st() const { return stepper_.st(); }
+  bool is_running() const { return began_.has_value(); }
+  void end(Ending ending) { ends_.now(std::move(ending)); }
 
-  sim::Simulator* simulator_;
   const RunOptions options_;
   std::function<WallTime()> host_clock_;
-  link::Server* server_ = nullptr;
   RunHooks hooks_;
-  std::map<link::PeerId, std::string> remote_;  // address of each connection
-
+  Peers peers_;
   RunLog log_;
   Timelines times_;
   Stepper stepper_;
-  std::vector<Session> sessions_;               // one per UAV, in the world's order
-  std::map<link::PeerId, std::size_t> joined_;  // index of the session of each SUT
+  std::vector<Session> sessions_;  // one per UAV, in the world's order
   RadioTraffic radio_;
   ControllerLinks controllers_;
-  SimTime time_limit_;  // a step boundary
   std::optional<sync::RealTimeLimit> pace_;
-
-  bool running_ = false;  // every SUT has joined
-  WallTime started_;      // construction; later, when every SUT had joined
-  WallTime flushed_;      // last flush of the record
+  std::optional<WallTime> began_;  // when every SUT had joined
   Watchdog watchdog_;
   ThreadLooks looks_;
-  std::optional<PlannedEnd> planned_end_;
-  std::optional<Ending> expelled_;  // how the run ends once the other SUTs have finished
-  std::optional<Ending> ended_;
+  Ends ends_;
 };
 
 }  // namespace tether::coordinator

@@ -51,7 +51,7 @@ void Coordinator::Impl::deliver(Session& session, ExecTime arrived_at) {
     pending.received = radio_.take_first(session.uav, same_instant(arrived_at));
     entry.reply_at = std::max(arrived_at, entry.request_at);
     if (const auto due = time_of(session).move_up(entry.sequence, entry.reply_at))
-      server_->send(session.peer, *due);
+      peers_.send(session.peer, *due);
     return;
   }
 }
@@ -59,9 +59,8 @@ void Coordinator::Impl::deliver(Session& session, ExecTime arrived_at) {
 // Ends the session of one SUT. The others finish, and then the run ends with the reason.
 void Coordinator::Impl::expel(Session& session, const Fault& fault) {
   refuse(session.peer, link::Refusal::Reason::kBadRequest, fault.what);
-  if (!expelled_)
-    expelled_ = {RunEnd::kFlooded,
-                 fmt::format("the SUT of UAV \"{}\" sent {}", session.uav_name, fault.what)};
+  ends_.later({RunEnd::kFlooded,
+               fmt::format("the SUT of UAV \"{}\" sent {}", session.uav_name, fault.what)});
   log_.footer().expelled.push_back(session.uav_name);
   leave(session);
 }

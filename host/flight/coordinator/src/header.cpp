@@ -130,15 +130,15 @@ record::Header Coordinator::Impl::make_header() const {
   record::Header header = options_.header;
   header.seed = options_.seed;
   header.policy = std::string(sync::name(options_.policy));
-  header.simulator = simulator_->description();
+  header.simulator = stepper_.simulator().description();
   header.step = grid().dt();
   header.ground_truth_period = options_.ground_truth_period;
   header.real_time_factor = options_.real_time_factor;
-  header.wall_at_start = started_;
-  header.reports_contacts = simulator_->reports_contacts();
+  header.wall_at_start = *began_;
+  header.reports_contacts = stepper_.simulator().reports_contacts();
   header.only_uavs_move = only_uavs_move(world());
-  header.moves_by_forces = simulator_->moves_by_forces();
-  header.time_limit = time_limit_.time_since_epoch();
+  header.moves_by_forces = stepper_.simulator().moves_by_forces();
+  header.time_limit = watchdog_.st_limit().time_since_epoch();
   if (sessions_.size() > 1) header.radio = describe(options_.radio);
   for (const Session& session : sessions_) {
     const sim::Uav& uav = world().uavs[session.uav];

@@ -24,31 +24,18 @@ record::Annotation annotation_of(const Session& session, const Sent& sent) {
 
 }  // namespace
 
-Session* Coordinator::Impl::find(link::PeerId peer) {
-  const auto joined = joined_.find(peer);
-  return joined == joined_.end() ? nullptr : &sessions_[joined->second];
-}
-
-void Coordinator::Impl::refuse(link::PeerId peer, link::Refusal::Reason reason,
-                               const std::string& message) {
-  if (hooks_.on_refused && reason != link::Refusal::Reason::kRunEnded)
-    hooks_.on_refused(remote_[peer], printable(message));
-  server_->send(peer, link::Refusal{reason, printable(message)});
-  server_->close(peer);
-  remote_.erase(peer);  // no more events from it
-}
-
 void Coordinator::Impl::on_event(const link::Event& event) {
   if (const auto* connected = std::get_if<link::Connected>(&event.what))
-    remote_[event.peer] = connected->remote_address;
-  if (const auto* message = std::get_if<link::Message>(&event.what); message && !ended_)
+    peers_.connected(event.peer, connected->remote_address);
+  if (const auto* message = std::get_if<link::Message>(&event.what); message && !ends_.is_over())
     on_message(event.peer, *message);
   if (const auto* closed = std::get_if<link::Closed>(&event.what))
     on_closed(event.peer, closed->failure);
 }
 
 void Coordinator::Impl::on_message(link::PeerId peer, const link::Message& message) {
-  Session* session = find(peer);
+  const auto uav = peers_.uav_of(peer);
+  Session* const session = uav ? &sessions_[*uav] : nullptr;
   if (const auto* hello = std::get_if<link::Hello>(&message); hello && !session)
     return join(peer, *hello);
   if (!session)
@@ -72,8 +59,8 @@ void Coordinator::Impl::on_message(link::PeerId peer, const link::Message& messa
 
 // The SUT's side cannot go on, and says why.
 void Coordinator::Impl::on_refusal(Session& session, const link::Refusal& refusal) {
-  server_->close(session.peer);
-  remote_.erase(session.peer);
+  peers_.close(session.peer);
+  peers_.forget(session.peer);
   time_of(session).leave();
   end({RunEnd::kSutLost, fmt::format("the SUT of UAV \"{}\" ended the run: {}", session.uav_name,
                                      printable(refusal.message))});
@@ -97,16 +84,17 @@ bool Coordinator::Impl::awaits_only_confirmation(const Session& session) const {
 }
 
 void Coordinator::Impl::on_closed(link::PeerId peer, const Failure& failure) {
-  const Session* session = find(peer);
-  if (!session && hooks_.on_refused && failure.kind != Failure::Kind::kDisconnected)
-    hooks_.on_refused(remote_[peer], failure.message);
-  remote_.erase(peer);
-  if (!session || time_of(*session).has_left()) return;
-  if (failure.kind == Failure::Kind::kDisconnected && awaits_only_confirmation(*session)) return;
-  const Party lost = party(*session, host_clock_());
+  const bool is_disconnected = failure.kind == Failure::Kind::kDisconnected;
+  const auto uav = peers_.uav_of(peer);
+  if (!uav && !is_disconnected) peers_.report(peer, failure.message);
+  peers_.forget(peer);
+  if (!uav || times_[*uav].has_left()) return;
+  const Session& session = sessions_[*uav];
+  if (is_disconnected && awaits_only_confirmation(session)) return;
+  const Party lost = party(session, host_clock_());
   const std::string where = lost.bound ? describe_state(lost) + "; " : "";
-  end({RunEnd::kSutLost, fmt::format("lost the SUT of UAV \"{}\"", session->uav_name),
-       where + failure.message, session->uav_name});
+  end({RunEnd::kSutLost, fmt::format("lost the SUT of UAV \"{}\"", session.uav_name),
+       where + failure.message, session.uav_name});
 }
 
 void Coordinator::Impl::join(link::PeerId peer, const link::Hello& hello) {
@@ -124,18 +112,18 @@ void Coordinator::Impl::join(link::PeerId peer, const link::Hello& hello) {
   if (const auto fault = build_fault(hello, session.replay.get()))
     return refuse(peer, link::Refusal::Reason::kBadRequest, *fault);
   session.peer = peer;
-  joined_[peer] = session.uav;
+  peers_.joined(peer, session.uav);
   session.hello = hello;
   session.hello.token.clear();
   session.hello.sut = printable(hello.sut);
-  if (hooks_.on_joined) hooks_.on_joined(session.uav, remote_[peer], hello.process);
+  if (hooks_.on_joined) hooks_.on_joined(session.uav, peers_.address(peer), hello.process);
   watchdog_.moved(host_clock_());
-  if (joined_.size() == sessions_.size()) start();
+  if (peers_.count_joined() == sessions_.size()) start();
 }
 
 void Coordinator::Impl::on_progress(Session& session, const link::Progress& progress,
                                     WallTime now) {
-  if (!running_ || !is_stamp(progress.reached)) return;
+  if (!is_running() || !is_stamp(progress.reached)) return;
   if (const auto fault = fault_of(progress, standing(session), now))
     return break_off(session, link::Refusal::Reason::kBadMessage, *fault);
   if (const auto stop = time_of(session).progress(progress))
@@ -154,7 +142,7 @@ void Coordinator::Impl::on_annotation(Session& session, const link::Annotation& 
 Standing Coordinator::Impl::standing(const Session& session) const {
   const Timeline& time = time_of(session);
   const int cores = session.cores > 0 ? session.cores : sync::kMostCores;
-  return {.running = running_,
+  return {.running = is_running(),
           .concurrent = session.hello.concurrent,
           .finished = session.finish.has_value(),
           .held = time.is_held(),
@@ -185,7 +173,7 @@ void Coordinator::Impl::on_request(Session& session, const link::Request& reques
     if (const auto flood = radio_.spend(session.uav, st(), send->bytes.size()))
       return expel(session, *flood);
   if (session.replay) check_replay(session, request);
-  if (ended_) return;
+  if (ends_.is_over()) return;
   ++session.next_sequence;
   if (auto sent = time_of(session).send({request, st(), now, session.uav})) {
     begin(std::move(*sent));
@@ -238,7 +226,7 @@ void Coordinator::Impl::begin(Sent sent) {
   record::Interaction& entry = pending.entry;
   stepper_.ends_computing(session.uav, same_instant(entry.request_at));
   entry.reply_at = plan(session, pending, {stepper_, radio_, controllers_});
-  if (const auto due = time_of(session).hold(entry)) server_->send(session.peer, *due);
+  if (const auto due = time_of(session).hold(entry)) peers_.send(session.peer, *due);
   session.open.push_back(std::move(pending));
 }
 

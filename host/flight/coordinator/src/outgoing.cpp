@@ -71,7 +71,7 @@ void Coordinator::Impl::reply(Session& session, std::size_t open_index, SimTime 
   entry.st_at_release = st;
   entry.grid_error = std::max(entry.grid_error, same_instant(entry.reply_at) - st);
   entry.wall_at_release = host_clock_();
-  server_->send(session.peer, std::move(message));
+  peers_.send(session.peer, std::move(message));
   session.received_bytes = 0;
 
   watchdog_.heard(session.uav, entry.wall_at_release);
@@ -101,9 +101,9 @@ void Coordinator::Impl::leave(Session& session) {
   session.open.clear();
   stepper_.close(session.uav);
   stepper_.ends_computing(session.uav, st());
-  server_->close(session.peer);
+  peers_.close(session.peer);
   if (std::ranges::all_of(sessions_, [&](const Session& s) { return time_of(s).has_left(); }))
-    end(expelled_.value_or(Ending{RunEnd::kFinished, "every SUT has finished"}));
+    ends_.all_have_finished();
 }
 
 }  // namespace tether::coordinator

@@ -32,6 +32,7 @@ void guarded(F&& f) {
 
 void RunLog::begin(record::Header header, bool repeatable) {
   repeatable_ = repeatable;
+  flushed_ = header.wall_at_start;
   for (const record::SutInfo& sut : header.suts) rows_.insert({sut.uav, {rows_.size(), {}}});
   if (repeatable) {
     header.wall_at_start = {};
@@ -147,7 +148,10 @@ void RunLog::image(SimTime st, const std::string& uav, const std::string& sensor
   put_raw(sample.labels);
 }
 
-void RunLog::flush() {
+void RunLog::flush(WallTime now) {
+  constexpr Duration kPeriod = std::chrono::seconds(1);
+  if (now - flushed_ < kPeriod) return;
+  flushed_ = now;
   guarded([&] { recorder_->flush(); });
 }
 

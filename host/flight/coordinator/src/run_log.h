@@ -49,7 +49,8 @@ class RunLog {
   void link(SimTime st, record::AutopilotMessage message) { in_order(st, std::move(message)); }
   void image(SimTime st, const std::string& uav, const std::string& sensor,
              const uav::CameraSample& sample);
-  void flush();
+  /// Once a second of WT, so that a killed run leaves most of it.
+  void flush(WallTime now);
   /// Writes the footer.
   void end();
 
@@ -85,6 +86,7 @@ class RunLog {
   record::Footer footer_;
   std::map<std::string, std::size_t> clearance_at_;  // in the footer, by UAV
   std::uint64_t images_ = 0;                         // rendered because a SUT read them
+  WallTime flushed_{};
   bool repeatable_ = false;
   bool collects_ = false;
   std::map<std::string, Row> rows_;                            // by UAV

@@ -40,6 +40,8 @@ class Stepper {
   void reset(std::uint64_t seed);
   SimTime st() const { return st_; }
   const StepGrid& grid() const { return grid_; }
+  const sim::Simulator& simulator() const { return *simulator_; }
+  const sim::World& world() const { return simulator_->world(); }
 
   /// The first boundary at which something is due.
   SimTime next_due() const;

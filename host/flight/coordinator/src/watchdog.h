@@ -51,6 +51,9 @@ class Watchdog {
 
   Watchdog(const Limits& limits, std::size_t suts, WallTime now);
 
+  /// That of the run: a step boundary.
+  SimTime st_limit() const { return limits_.st; }
+
   /// Every SUT has joined.
   void begin(WallTime now);
   /// ST advanced, a reply was sent, or a SUT joined.

@@ -269,7 +269,7 @@ TEST_F(CoordinatorTest, EndsIfASutDoesNotJoinOrDisconnects) {
   server_->disconnect(add_silent());
   report = run();
   EXPECT_EQ(report.end, RunEnd::kSutLost);
-  EXPECT_TRUE(report.began);
+  EXPECT_TRUE(report.began && report.lost_uav == "uav0");
   EXPECT_THAT(report.reason, HasSubstr("connection closed"));
 }
 
