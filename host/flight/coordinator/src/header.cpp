@@ -113,6 +113,13 @@ double max_acceleration_m_s2(const uav::MultirotorParameters& airframe, const si
   return (thrust_N + drag_N) / airframe.mass_kg + norm(felt_at_rest(world));
 }
 
+record::LoadInfo describe(const sim::Uav& uav, const sim::World& world) {
+  record::LoadInfo info{uav.airframe.mass_kg, norm(felt_at_rest(world)), {}};
+  for (const sim::Payload& payload : uav.payloads)
+    info.payloads.push_back({payload.mass_kg, payload.from, payload.until});
+  return info;
+}
+
 /// Of all rotors at full speed, as if each one turned the UAV the same way.
 double max_angular_acceleration_rad_s2(const uav::MultirotorParameters& airframe) {
   const uav::Vec3& inertia = airframe.inertia_kg_m2;
@@ -161,6 +168,7 @@ record::Header Coordinator::Impl::make_header() const {
          .energy = describe_energy(uav, world().gravity_m_s2)});
     record::SutInfo& sut = header.suts.back();
     sut.joints = describe(uav.joints);
+    if (!uav.payloads.empty()) sut.load = describe(uav, world());
     sut.as_is = options_.uavs[session.uav].as_is;
     if (!std::holds_alternative<uav::ConstantDelay>(session.command_latency))
       sut.max_command_latency = uav::bounds(session.command_latency).second;

@@ -50,6 +50,26 @@ TEST(HeaderFacts, ARadioHasTheSettingsOfItsModelOnly) {
   EXPECT_EQ(describe(settings).tx_power_dbm, settings.tx_power_dbm);
 }
 
+TEST_F(HeaderTest, SaysWhatAUavCarriesAndWhen) {
+  sim::World world = sim::make_fake_world(2);
+  world.gravity_m_s2 = 9.5;
+  world.uavs[1].airframe.mass_kg = 0.8;
+  world.uavs[1].payloads = {
+      {.mass_kg = 0.2, .from = SimTime(Duration(1)), .until = SimTime(Duration(3))}};
+  make(std::move(world));
+  server_->add_sut(hello("uav0"), {finish(Duration(0))});
+  server_->add_sut(hello("uav1"), {finish(Duration(0))});
+  run();
+  for (const record::SutInfo& sut : recorder_.header.suts) {
+    if (sut.uav == "uav0") {
+      EXPECT_EQ(sut.load, std::nullopt);
+    } else {
+      EXPECT_EQ(sut.load,
+                (record::LoadInfo{0.8, 9.5, {{0.2, SimTime(Duration(1)), SimTime(Duration(3))}}}));
+    }
+  }
+}
+
 TEST_F(HeaderTest, SaysWhichUavAnAnchorIs) {
   sim::World world = sim::make_fake_world(2);
   world.anchors[0].anchor.name = "uav1";

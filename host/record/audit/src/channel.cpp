@@ -260,9 +260,9 @@ class ChannelCheck {
       const double share = all_s > 0.0 ? seconds_between(before->at, at) / all_s : 0.0;
       for (int i = 0; i < 3; ++i)
         apart[i] += sign * ((1.0 - share) * before->p_WB_m[i] + share * after->p_WB_m[i]);
-      slack_m += kMargin * all_s *
-                 (distance(before->v_WB_m_s, after->v_WB_m_s) + track.acceleration_m_s2() * all_s) /
-                 4.0;
+      const double most_m_s2 = track.acceleration_m_s2(before->at, after->at);
+      slack_m +=
+          kMargin * all_s * (distance(before->v_WB_m_s, after->v_WB_m_s) + most_m_s2 * all_s) / 4.0;
     }
     const double middle = std::hypot(apart[0], apart[1], apart[2]);
     return {std::max(0.0, middle - slack_m), middle + slack_m};

@@ -30,7 +30,7 @@ std::optional<double> most_m_s(const Track& track, SimTime at) {
   if (after == nullptr || !(track.info->extent_m > 0.0)) return std::nullopt;
   const double time_s = seconds_between(before->at, after->at);
   const double linear_m_s = std::max(length(before->v_WB_m_s), length(after->v_WB_m_s)) +
-                            track.acceleration_m_s2() * time_s;
+                            track.acceleration_m_s2(before->at, after->at) * time_s;
   const double turning_rad_s = std::max(length(before->w_WB_B_rad_s), length(after->w_WB_B_rad_s)) +
                                track.info->max_angular_acceleration_rad_s2 * time_s;
   return kMargin * (linear_m_s + track.info->extent_m * turning_rad_s) + kTolerance_m_s;

@@ -112,7 +112,7 @@ class MotionCheck {
     const double before_m_s = length(last.v_WB_m_s);
     const double speed_m_s =
         std::max(before_m_s, std::min(length(next.v_WB_m_s), before_m_s + kMostHit_m_s)) +
-        track.acceleration_m_s2() * time_s;
+        track.acceleration_m_s2(last.at, next.at) * time_s;
     return kMargin * speed_m_s * time_s + kTolerance_m;
   }
 
@@ -150,8 +150,8 @@ class MotionCheck {
     };
     std::array<double, 3> way{};
     for (std::size_t i = 0; i < 3; ++i) way[i] = next.message.p_WB_m[i] - last.p_WB_m[i];
-    check("the velocity", last.v_WB_m_s, next.message.v_WB_m_s, way, track.acceleration_m_s2(),
-          1e-4);
+    check("the velocity", last.v_WB_m_s, next.message.v_WB_m_s, way,
+          track.acceleration_m_s2(last.at, next.message.at), 1e-4);
     const double most_rad_s2 = track.info->max_angular_acceleration_rad_s2;
     const double turned_rad =
         std::max(length(last.w_WB_B_rad_s), length(next.message.w_WB_B_rad_s)) * dt_s;

@@ -20,9 +20,17 @@ struct Track {
   const record::SutInfo* info = nullptr;
   std::vector<const record::Logged<record::GroundTruth>*> truths;  ///< in file order
 
-  double acceleration_m_s2() const {
+  /// The most between these instants. What it carries all the time slows it.
+  double acceleration_m_s2(SimTime from, SimTime to) const {
     constexpr double kMost = 500.0;  // if it is unknown: no multirotor reaches it
-    return info->max_acceleration_m_s2 > 0.0 ? info->max_acceleration_m_s2 : kMost;
+    const double alone = info->max_acceleration_m_s2;
+    if (!(alone > 0.0)) return kMost;
+    if (!info->load || alone <= info->load->gravity_m_s2) return alone;
+    double mass_kg = info->load->own_mass_kg;
+    for (const record::PayloadInfo& payload : info->load->payloads)
+      if (payload.from <= from && to <= payload.until) mass_kg += payload.mass_kg;
+    const double gravity_m_s2 = info->load->gravity_m_s2;
+    return (alone - gravity_m_s2) * info->load->own_mass_kg / mass_kg + gravity_m_s2;
   }
   /// The first one at `at` or later; null: there is none.
   const record::GroundTruth* at_or_after(SimTime at) const { return message(place(at)); }

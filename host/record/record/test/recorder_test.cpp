@@ -59,6 +59,7 @@ TEST(Recorder, ModelsAndCommandsAreReadBack) {
   written.only_uavs_move = written.moves_by_forces = true;
   written.suts[0].extent_m = 0.25;
   written.suts[0].max_angular_acceleration_rad_s2 = 500.0;
+  written.suts[0].load = {0.7, 9.8, {{0.2, SimTime(Duration(5)), SimTime(Duration(7))}, {0.1}}};
   written.suts[0].energy = {7200.0, 0.02, 0.9, {{0.0, 10.0}, {1.0, 12.6}}, 80.0, 2.0, 3.0, 4.0};
   written.radio = {.model = "log_distance",
                    .least_delay = Duration(7),
@@ -80,6 +81,7 @@ TEST(Recorder, ModelsAndCommandsAreReadBack) {
   EXPECT_EQ(to_metadata(read.header), to_metadata(written));
   EXPECT_EQ(read.header.radio, written.radio);
   EXPECT_EQ(read.header.suts[0].energy, written.suts[0].energy);
+  EXPECT_EQ(read.header.suts[0].load, written.suts[0].load);
   EXPECT_EQ(read.interactions[0].message.command, command.command);
 }
 

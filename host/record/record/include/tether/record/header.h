@@ -139,6 +139,22 @@ struct JointInfo {
 
   friend bool operator==(const JointInfo&, const JointInfo&) = default;
 };
+/// What a UAV carries for a time, at its centre of mass.
+struct PayloadInfo {
+  double mass_kg = 0.0;            ///< > 0
+  SimTime from{};                  ///< the first step with it begins here or later
+  SimTime until = SimTime::max();  ///< the first step without it begins here or later
+
+  friend bool operator==(const PayloadInfo&, const PayloadInfo&) = default;
+};
+/// What a UAV carries from when to when, and what is needed to know how that slows it.
+struct LoadInfo {
+  double own_mass_kg = 0.0;   ///< without them; > 0
+  double gravity_m_s2 = 0.0;  ///< its share of SutInfo::max_acceleration_m_s2
+  std::vector<PayloadInfo> payloads;
+
+  friend bool operator==(const LoadInfo&, const LoadInfo&) = default;
+};
 struct SutInfo {
   std::string uav;
   std::string sut;  ///< name and version that the SUT reported
@@ -148,8 +164,8 @@ struct SutInfo {
   bool concurrent = false;  ///< several threads with parallel calls
   /// Clock "cpu": number of cores whose CPU time can add up; 0: unknown.
   int cores = 0;
-  /// The most that rotors and gravity together can accelerate the UAV; 0: unknown, as in records of
-  /// Tether 0.1.0.
+  /// The most that rotors and gravity together can accelerate the UAV, without `load`; 0: unknown,
+  /// as in records of Tether 0.1.0.
   double max_acceleration_m_s2 = 0.0;
   /// The clock of the condition; the SUT announced the one above. None in records of Tether 0.1.0.
   std::optional<computer::Clock> required_clock{};
@@ -173,6 +189,7 @@ struct SutInfo {
   std::optional<ControllerInfo> controller{};     ///< none: its commands are the vehicle's own
   bool as_is = false;  ///< it does not use Tether's library: tether-exec --as-is runs it
   std::vector<JointInfo> joints{};
+  std::optional<LoadInfo> load{};  ///< none: it carries nothing
 };
 /// A computer whose cores several SUTs share. On a virtual one, while n compute, each gets min(1,
 /// cores / n) of a core; a core with pinned programs is shared by these only. On a real one, its
