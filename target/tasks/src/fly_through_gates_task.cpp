@@ -17,7 +17,7 @@ constexpr double kTrustInSight = 0.3;
 /// Acceleration for each m/s of speed ahead that is missing.
 constexpr double kAheadGain_per_s = 2.0;
 /// A gate is passed when its middle is so far behind [m].
-constexpr double kBehind_m = 0.3;
+constexpr double kBehind_m = 0.1;
 
 /// `v`, no longer than `most`.
 uav::Vec3 limited(const uav::Vec3& v, double most) {
@@ -25,14 +25,19 @@ uav::Vec3 limited(const uav::Vec3& v, double most) {
   return length <= most ? v : (most / length) * v;
 }
 
-/// The way from the camera to the middle of the ROI, in the world: by the direction of its middle,
-/// and by the horizontal distance.
-uav::Vec3 way_W(const uav::SensorDescription& camera, const uav::Quat& q_WB, const vision::Roi& roi,
-                double distance_m) {
-  const auto& model = std::get<uav::CameraProperties>(camera.properties).model;
-  const uav::Vec3 direction_W =
-      rotate(q_WB * camera.X_BS.q * uav::q_body_from_optical(), model.unproject(roi.center));
-  return (distance_m / std::hypot(direction_W.x, direction_W.y)) * direction_W;
+/// The way from the camera to the middle of a gate, in the optical frame. The camera rolls with the
+/// UAV: the upright rectangle around the gate is wider and higher than the gate.
+uav::Vec3 way_to_middle(const uav::CameraModel& model, const uav::Anchor& gate,
+                        const vision::Roi& roi, double roll_rad) {
+  const double growth = std::cos(roll_rad) + std::abs(std::sin(roll_rad));
+  const double pixels_per_m =
+      (roi.width_px + roi.height_px) / ((gate.size_m.y + gate.size_m.z) * growth);
+  return (model.fx_px / pixels_per_m + 0.5 * gate.size_m.x) * model.unproject(roi.center);
+}
+
+/// Of its y, above the horizon.
+double roll_rad(const uav::Quat& q_W) {
+  return std::asin(std::clamp(rotate(q_W, uav::Vec3{0.0, 1.0, 0.0}).z, -1.0, 1.0));
 }
 
 }  // namespace
@@ -54,6 +59,9 @@ Progress FlyThroughGatesTask::initialise(TaskContext& context) {
   aim_H0_ = {};
   if (context.vehicle().catalogue().anchors.empty())
     return TaskOutcome::failed({Failure::Kind::kInvalid, "the scenario has no anchors to fly to"});
+  VisionOptions vision = context.vision();
+  vision.tracker.is_hollow = true;
+  context.look_with(vision);
   const auto imu = context.sensor(options_.imu, uav::SensorKind::kImu);
   if (!imu) return TaskOutcome::failed(imu.failure());
   if (const Status queue = context.vehicle().set_queue(options_.imu, kImuQueue); !queue)
@@ -113,13 +121,17 @@ Status FlyThroughGatesTask::follow_motion(TaskContext& context) {
 void FlyThroughGatesTask::see(TaskContext& context, const vision::Roi& roi,
                               std::uint64_t image_index, SimTime sampled_at) {
   const uav::SensorDescription& camera = **context.camera();
-  const vision::RelativePosition position = vision::relative_position(camera, gate(context), roi);
-  context.note_estimate(gate(context).name, image_index, position, true);
-  if (!position.distance_m || roi.cut_left_or_right) return;
+  if (roi.cut_above_or_below || roi.cut_left_or_right) return;
   const PoseTrack::State& then = track_->at(sampled_at);
-  const uav::Vec3 p_WG = then.p_WB + rotate(then.q_WB, camera.X_BS.p) +
-                         way_W(camera, then.q_WB, roi, *position.distance_m);
-  const uav::Vec3 seen_H0 = transform(inverse(X_WH0_), p_WG);
+  const uav::Quat q_WS = then.q_WB * camera.X_BS.q;
+  const auto& model = std::get<uav::CameraProperties>(camera.properties).model;
+  const uav::Vec3 way_W = rotate(q_WS * uav::q_body_from_optical(),
+                                 way_to_middle(model, gate(context), roi, roll_rad(q_WS)));
+  const uav::Vec3 way_B = rotate(inverse(then.q_WB), way_W);
+  context.note_estimate(gate(context).name, image_index,
+                        {std::atan2(way_B.y, way_B.x), std::hypot(way_W.x, way_W.y)}, true);
+  const uav::Vec3 seen_H0 =
+      transform(inverse(X_WH0_), then.p_WB + rotate(then.q_WB, camera.X_BS.p) + way_W);
   ++sightings_;
   p_H0G_ = p_H0G_ ? *p_H0G_ + kTrustInSight * (seen_H0 - *p_H0G_) : seen_H0;
 }

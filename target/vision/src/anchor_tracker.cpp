@@ -179,6 +179,7 @@ void AnchorTracker::prefilter(const uav::CameraSample& image) {
 void AnchorTracker::back_project() {
   cv::cvtColor(impl_->smooth, impl_->hsv, cv::COLOR_RGB2HSV);
   impl_->color.back_project(impl_->hsv, impl_->probability);
+  if (impl_->options.is_hollow) fill_openings(impl_->probability, impl_->options.min_area_px);
 }
 
 std::optional<Roi> AnchorTracker::locate() {

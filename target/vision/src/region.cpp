@@ -178,6 +178,20 @@ Edges find_edges(const cv::Mat& hsv, const cv::Rect& rectangle, const ColorModel
           .height_px = column_height_px(chroma, inner)};
 }
 
+void fill_openings(cv::Mat& probability, int min_area_px) {
+  cv::Mat likely;
+  cv::threshold(probability, likely, kBlobThreshold, 255, cv::THRESH_BINARY);
+  std::vector<std::vector<cv::Point>> outlines;
+  cv::findContours(likely, outlines, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_SIMPLE);
+  for (const std::vector<cv::Point>& outline : outlines) {
+    if (cv::boundingRect(outline).area() < min_area_px) continue;
+    // Of one that the border of the image cuts off, the outline goes around its opening, too.
+    std::vector<cv::Point> hull;
+    cv::convexHull(outline, hull);
+    cv::fillConvexPoly(probability, hull, 255);
+  }
+}
+
 std::vector<cv::Rect> find_blobs(const cv::Mat& probability, int min_area_px, std::size_t limit) {
   cv::Mat likely, labels, stats, centroids;
   cv::threshold(probability, likely, kBlobThreshold, 255, cv::THRESH_BINARY);

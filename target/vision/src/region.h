@@ -41,6 +41,10 @@ struct Edges {
 /// edge in proportion to how much of a pixel the anchor covers.
 Edges find_edges(const cv::Mat& hsv, const cv::Rect& rectangle, const ColorModel& color);
 
+/// Makes what each region of at least so many pixels encloses as likely as can be: the opening of a
+/// gate.
+void fill_openings(cv::Mat& probability, int min_area_px);
+
 /// Candidate rectangles in the whole image, the largest first; at most `limit`.
 std::vector<cv::Rect> find_blobs(const cv::Mat& probability, int min_area_px, std::size_t limit);
 

@@ -34,6 +34,17 @@ class Picture {
     }
     return *this;
   }
+  /// The four bars of a gate whose side is `side`, rolled about its middle.
+  Picture& add_gate(const cv::Point2f& middle, float side, float roll_deg) {
+    cv::Mat image = rgb();
+    for (const float edge : {side, 0.8F * side}) {
+      cv::Point2f corners[4];
+      cv::RotatedRect(middle, {edge, edge}, roll_deg).points(corners);
+      std::vector<cv::Point> outline(corners, corners + 4);
+      cv::fillConvexPoly(image, outline, edge == side ? kBlue : cv::Scalar(150, 148, 145));
+    }
+    return *this;
+  }
   const uav::CameraSample& sample() const { return sample_; }
 
  private:
@@ -119,6 +130,27 @@ TEST(AnchorTracker, PrefersTheBetterShapeToTheLargerOne) {
       t.track(Picture().fill({10, 10, 300, 30}, kBlue).fill({150, 100, 40, 40}, kBlue).sample());
   ASSERT_TRUE(roi);
   EXPECT_NEAR(roi->center.v_px, 119.5, 1.0);
+}
+
+// A gate's upper and lower bars are a fifth of what its sides are in the profile of the columns.
+TEST(AnchorTracker, FollowsAGateAsAWhole) {
+  TrackerOptions options;
+  options.is_hollow = true;
+  AnchorTracker t = tracker(options);
+  for (int i = 0; i < 40; ++i) {
+    const float roll_deg = 20.0F * std::sin(0.4F * static_cast<float>(i));
+    const float side = 40.0F + 2.0F * static_cast<float>(i);
+    const float middle_u = 130.0F + static_cast<float>(i);
+    const double roll_rad = std::abs(roll_deg) * CV_PI / 180.0;
+    const double extent_px = side * (std::cos(roll_rad) + std::sin(roll_rad));
+    const auto roi =
+        t.track(Picture().add_gate({middle_u, 90.0F}, side, roll_deg).add_noise(4.0, 1).sample());
+    ASSERT_TRUE(roi) << i;
+    EXPECT_NEAR(roi->center.u_px, middle_u, 1.5) << i;
+    EXPECT_NEAR(roi->center.v_px, 90.0, 1.5) << i;
+    EXPECT_NEAR(roi->width_px, extent_px, 4.0 + 0.05 * extent_px) << i;
+    EXPECT_NEAR(roi->height_px, extent_px, 4.0 + 0.05 * extent_px) << i;
+  }
 }
 
 TEST(AnchorTracker, ReportsAnchorCutByTheImageBorder) {

@@ -29,6 +29,7 @@ class TaskContext {
 
   client::Vehicle& vehicle() { return vehicle_; }
 
+  const VisionOptions& vision() const { return vision_; }
   /// Sets the options and resets all trackers. Must not be called while a task tracks an anchor.
   void look_with(VisionOptions vision);
 

@@ -40,6 +40,8 @@ struct TrackerOptions {
   int min_area_px = 30;             ///< smaller regions are noise
   double min_score = 0.40;          ///< below it the anchor counts as lost
   double max_area_change = 3.0;  ///< factor between images beyond which the window is not trusted
+  /// The anchor has an opening, as a gate: what its parts enclose counts as part of it.
+  bool is_hollow = false;
 };
 
 /// Follows one anchor of known colour through a sequence of images with CamShift (Bradski,
