@@ -81,7 +81,8 @@ INSTANTIATE_TEST_SUITE_P(
                     TaskFlight{"move_forward", 60, false}, TaskFlight{"closed_path", 150, false},
                     TaskFlight{"mission"}, TaskFlight{"avoid_by_scan"},
                     TaskFlight{"avoid_by_scan", 75, false}, TaskFlight{"fly_through_gates"},
-                    TaskFlight{"fly_through_gates", 10, false}, TaskFlight{"follow_moving", 20},
+                    TaskFlight{"fly_through_gates", 10, false}, TaskFlight{"follow_uav", 20},
+                    TaskFlight{"follow_uav", 150, false}, TaskFlight{"follow_moving", 20},
                     TaskFlight{"follow_moving", 90, false}, TaskFlight{"land_on_platform"},
                     TaskFlight{"land_on_platform", 60, false}),
     [](const auto& one) { return one.param.scenario + (one.param.reaches ? "_fast" : "_slow"); });
