@@ -108,7 +108,11 @@ class BuiltIn : public FlightController {
     commander_.step();
     missions_.step(vehicle_.now, outbox_);
     parameter_port_.step(vehicle_.parameters, outbox_);
-    const uav::Setpoint wanted = navigator_.step(vehicle_, missions_, offboard_, since, outbox_);
+    uav::Setpoint wanted = navigator_.step(vehicle_, missions_, offboard_, since, outbox_);
+    if (!vehicle_.joints_rad.empty()) {
+      wanted.mask |= uav::kJoints;
+      wanted.joints_rad = vehicle_.joints_rad;
+    }
     telemetry_.step({vehicle_, sensed, wanted, missions_}, outbox_);
     return {.setpoint = of_truth(wanted, sensed.truth), .sent = outbox_.take()};
   }

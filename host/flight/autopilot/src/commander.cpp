@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -16,9 +18,10 @@ constexpr int kAccepted = 0, kRejected = 1, kDenied = 2, kUnsupported = 3, kFail
 
 // MAV_CMD.
 constexpr int kNavLoiter = 17, kNavReturn = 20, kNavLand = 21, kNavTakeoff = 22, kDoSetMode = 176,
-              kDoChangeSpeed = 178, kDoSetHome = 179, kDoReposition = 192, kMissionStart = 300,
-              kArmDisarm = 400, kGetHome = 410, kGetInterval = 510, kSetInterval = 511,
-              kRequestMessage = 512, kRequestCapabilities = 520;
+              kDoChangeSpeed = 178, kDoSetHome = 179, kDoReposition = 192, kDoMountControl = 205,
+              kMissionStart = 300, kArmDisarm = 400, kGetHome = 410, kGetInterval = 510,
+              kSetInterval = 511, kRequestMessage = 512, kRequestCapabilities = 520,
+              kDoGimbalPitchYaw = 1000;
 
 constexpr double kForce = 21196.0;  // parameter 2 of kArmDisarm: without checks
 
@@ -69,6 +72,7 @@ void Commander::on_message(const mavlink::Frame& frame) {
     command.p[5] = degrees_of(m.integer("x"));
     command.p[6] = degrees_of(m.integer("y"));
     command.p[7] = m.number("z");
+    if (command.id == kDoGimbalPitchYaw) command.p[5] = static_cast<double>(m.integer("x"));
     const auto mav_frame = m.integer("frame");
     command.is_place_relative = mav_frame == 3 || mav_frame == 6;
   } else {
@@ -110,6 +114,17 @@ int Commander::run(const Command& command) {
       return kAccepted;
     case kDoSetHome:
       return set_home(command);
+    case kDoMountControl: {
+      constexpr double kByAngles = 2.0;  // MAV_MOUNT_MODE_MAVLINK_TARGETING
+      return p[7] == kByAngles ? point_mount({p[1], p[2], p[3]}) : kUnsupported;
+    }
+    case kDoGimbalPitchYaw: {
+      const bool is_by_rates = std::isfinite(p[3]) || std::isfinite(p[4]);
+      constexpr std::int64_t kLocks = 4 + 8 + 16;  // roll, pitch, yaw: against the world
+      const std::int64_t flags = whole(p[5]);
+      if (is_by_rates || (flags > 0 && (flags & kLocks) != 0)) return kUnsupported;
+      return point_mount({p[1], std::numeric_limits<double>::quiet_NaN(), p[2]});
+    }
     case kGetHome:
       telemetry_->request("HOME_POSITION");
       return kAccepted;
@@ -273,6 +288,16 @@ int Commander::set_interval(const Command& command) {
   const auto* type = type_of(command.p[1]);
   return type != nullptr && telemetry_->set_interval(type->name, command.p[2]) ? kAccepted
                                                                                : kFailed;
+}
+
+int Commander::point_mount(const MountAngles& wanted) {
+  if (vehicle_->limits.joints.empty()) return kUnsupported;
+  std::vector<double> angles_rad = vehicle_->joints_rad;
+  if (angles_rad.empty())
+    for (const uav::Joint& joint : vehicle_->limits.joints) angles_rad.push_back(start_rad(joint));
+  if (!point(vehicle_->limits.joints, wanted, angles_rad)) return kDenied;
+  vehicle_->joints_rad = std::move(angles_rad);
+  return kAccepted;
 }
 
 int Commander::set_home(const Command& command) {

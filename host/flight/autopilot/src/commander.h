@@ -1,6 +1,7 @@
 #pragma once
 
 #include "missions.h"
+#include "mount.h"
 #include "navigator.h"
 #include "offboard.h"
 #include "outbox.h"
@@ -51,6 +52,7 @@ class Commander {
   int reposition(const Command& command);
   int set_interval(const Command& command);
   int set_home(const Command& command);
+  int point_mount(const MountAngles& wanted);
   std::string why_not_arm() const;
   std::string why_not(Mode mode) const;
   /// False: it is denied, and the reason told.

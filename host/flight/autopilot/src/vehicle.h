@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include <tether/base/time.h>
 #include <tether/uav/multirotor.h>
@@ -36,6 +37,7 @@ struct Vehicle {
   bool is_failsafe = false;
   uav::Vec3 home_W;
   double home_yaw_W_rad = 0.0;
+  std::vector<double> joints_rad{};  ///< to which they were commanded; empty: they were not
 
   double parameter(Parameter which) const { return parameters[which]; }
   Duration time_parameter(Parameter which) const {

@@ -1,5 +1,7 @@
 #include "flight.h"
 
+#include <tether/base/units.h>
+
 namespace tether::autopilot {
 namespace {
 
@@ -15,6 +17,35 @@ TEST(Commander, ArmsOnTheGroundAndSaysSo) {
   EXPECT_FALSE(flight.is_armed());
   EXPECT_EQ(flight.command(kArmCommand, {0.4}), kUnsupported);
   EXPECT_EQ(flight.command(kArmCommand, {kNone}), kUnsupported);
+}
+
+// Down is negative for MAVLink, and positive about the body's left.
+TEST(Commander, PointsAGimbal) {
+  constexpr int kMountControl = 205, kPitchYaw = 1000;
+  uav::FlightLimits limits;
+  limits.joints = {{"yaw", {}, {0, 0, 1}, -2, 2, 1}, {"pitch", {}, {0, 1, 0}, 0.1, 1, 1}};
+  Flight flight({.limits = limits});
+  flight.boot();
+  EXPECT_FALSE(flight.setpoint.has(uav::kJoints));
+  EXPECT_EQ(flight.command(kMountControl, {-30, 0, kNone, 0, 0, 0, 2}), kAccepted);
+  ASSERT_EQ(flight.setpoint.joints_rad.size(), 2u);
+  EXPECT_EQ(flight.setpoint.joints_rad[0], 0.0);
+  EXPECT_NEAR(flight.setpoint.joints_rad[1], rad_from_deg(30), 1e-12);
+  flight.run(0.1);
+  EXPECT_TRUE(flight.setpoint.has(uav::kJoints)) << "as long as it flies";
+  EXPECT_EQ(flight.command(kPitchYaw, {kNone, 60, kNone, kNone, 0}), kAccepted);
+  EXPECT_NEAR(flight.setpoint.joints_rad[0], rad_from_deg(-60), 1e-12);
+  EXPECT_NEAR(flight.setpoint.joints_rad[1], rad_from_deg(30), 1e-12);
+  EXPECT_EQ(flight.command(kPitchYaw, {0, 0, 5, 5, 0}), kUnsupported) << "rates";
+  EXPECT_EQ(flight.command(kPitchYaw, {0, 0, kNone, kNone, 16}), kUnsupported) << "against north";
+  Message by_int("COMMAND_INT");
+  by_int.set("target_system", 1).set("command", kPitchYaw).set("x", 16);
+  EXPECT_EQ(flight.acknowledged(by_int.set("param3", kNone).set("param4", kNone)), kUnsupported);
+  EXPECT_EQ(flight.command(kMountControl, {0, 0, 0, 0, 0, 0, 3}), kUnsupported) << "by sticks";
+  EXPECT_EQ(flight.command(kMountControl, {kNone, 0, kNone, 0, 0, 0, 2}), kDenied) << "roll";
+  Flight without;
+  without.boot();
+  EXPECT_EQ(without.command(kMountControl, {-30, 0, 0, 0, 0, 0, 2}), kUnsupported);
 }
 
 TEST(Commander, DeniesArmingWithTheReason) {

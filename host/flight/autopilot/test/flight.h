@@ -38,8 +38,11 @@ class Flight {
         state_(hover_state(uav::hummingbird(), kGravity, yaw_rad)) {
     settings.place = {
         .latitude_deg = 0.0, .longitude_deg = 0.0, .elevation_m = 0.0, .heading_rad = heading_rad};
+    std::vector<uav::Joint> joints = std::move(settings.limits.joints);
     settings.limits = flight_limits(uav::hummingbird());
+    settings.limits.joints = std::move(joints);
     settings.hover_thrust_N = uav::hummingbird().mass_kg * kGravity;
+    limits_ = settings.limits;
     controller_ = make_built_in(settings);
     body.p_WB = p_WB;
     body.q_WB = uav::from_rpy(0, 0, yaw_rad);
@@ -171,7 +174,7 @@ class Flight {
     for (const Bytes& bytes : actions.sent)
       for (const mavlink::Frame& frame : decoder_.push(bytes)) hear(frame);
     if (actions.setpoint) setpoint = *actions.setpoint;
-    ASSERT_EQ(complaint_about(setpoint, flight_limits(uav::hummingbird())), "");
+    ASSERT_EQ(complaint_about(setpoint, limits_), "");
     for (int i = 0; i < 4; ++i) integrate();
     now += std::chrono::milliseconds(4);
   }
@@ -215,6 +218,7 @@ class Flight {
   uav::Multirotor multirotor_;
   uav::MultirotorState state_;
   std::unique_ptr<FlightController> controller_;
+  uav::FlightLimits limits_;
   std::vector<Bytes> outgoing_;
   mavlink::Decoder decoder_;
   std::uint8_t sequence_ = 0, expected_ = 0;

@@ -36,6 +36,19 @@ class Turn {
     if (joint_ < effect.setpoint->joints_rad.size())
       target_rad_ = effect.setpoint->joints_rad[joint_];
   }
+  // By a flight controller, whose commands are not in the record: within its limits and its rate.
+  void check_rate(const Logged<record::GroundTruth>& truth, Report& report) {
+    const double is_rad = truth.message.joints_rad[joint_];
+    const double most_rad = info_.max_rate_rad_s * seconds_between(at_, truth.message.at);
+    if (!(std::abs(is_rad - angle_rad_) <= most_rad + kRounding_rad) ||
+        is_rad < info_.min_rad - kRounding_rad ||
+        is_rad > std::max(info_.min_rad, info_.max_rad) + kRounding_rad)
+      report.add(0, truth,
+                 "joint \"{}\" goes from {:.9g} rad to {:.9g} rad: beyond its rate or limits",
+                 info_.name, angle_rad_, is_rad);
+    if (std::isfinite(is_rad)) angle_rad_ = is_rad;
+    at_ = truth.message.at;
+  }
   // Goes on from what the message has, so that one finding is not the next one, too.
   void check(const Logged<record::GroundTruth>& truth, Report& report) {
     const double is_rad = truth.message.joints_rad[joint_];
@@ -68,6 +81,10 @@ void check_track(const Track& track, const std::vector<const CommandEffect*>& ef
     for (; next != effects.end() && (*next)->applied_at < truth->message.at; ++next)
       for (Turn& turn : turns) turn.take(**next);
     for (Turn& turn : turns) {
+      if (track.info->controller) {
+        turn.check_rate(*truth, report);
+        continue;
+      }
       turn.turn(truth->message.at);
       turn.check(*truth, report);
     }

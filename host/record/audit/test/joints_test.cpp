@@ -71,6 +71,21 @@ TEST(AuditJoints, ThatTurnOtherwiseAreReportedOnce) {
               testing::Not(IsEmpty()));
 }
 
+TEST(AuditJoints, OfAFlightControllerTurnWithinTheirRateAndLimits) {
+  const auto controlled = [](double max_rate_rad_s, double max_rad) {
+    return findings_after([&](Record& r) {
+      r.commands.clear();
+      r.header.suts[0].controller.emplace();
+      r.header.suts[0].joints[0].max_rate_rad_s = max_rate_rad_s;
+      r.header.suts[0].joints[0].max_rad = max_rad;
+    });
+  };
+  EXPECT_THAT(controlled(1.0, 1.0), IsEmpty());
+  EXPECT_THAT(controlled(0.9, 1.0), ElementsAre(HasSubstr("goes from 0.005 rad to 0.015 rad"),
+                                                HasSubstr("to 0.005 rad")));
+  EXPECT_THAT(controlled(1.0, 0.01), ElementsAre(HasSubstr("0.015"), HasSubstr("0.015")));
+}
+
 TEST(AuditJoints, HaveAnAngleInEachMessage) {
   EXPECT_THAT(findings_after([](Record& r) { r.ground_truth[3].message.joints_rad.clear(); }),
               ElementsAre(HasSubstr("0 angles of 1 joints")));

@@ -26,10 +26,12 @@ ControllerOptions built_in(const scenario::FlightController& controller,
   const sim::Uav& own = world.uavs[uav];
   const auto estimator =
       std::ranges::find(own.sensors, uav::SensorKind::kOdometry, &sim::Sensor::kind);
+  uav::FlightLimits limits = flight_limits(own.airframe);
+  limits.joints = own.joints;
   const autopilot::BuiltInSettings settings{
       .system_id = system_id(uav),
       .place = world.place.value_or(sim::Place{}),
-      .limits = flight_limits(own.airframe),
+      .limits = limits,
       .hover_thrust_N = own.airframe.mass_kg * world.gravity_m_s2,
       .starts_in_air = controller.starts_in_air,
       .parameters = controller.parameters};

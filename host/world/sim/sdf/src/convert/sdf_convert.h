@@ -91,13 +91,13 @@ std::set<std::string> read_airframe(const SdfSource& source, const sdf::Model& m
 std::optional<energy::Battery> read_battery(const SdfSource& source, const sdf::ElementPtr& model);
 
 /// The joints of a UAV that its program can turn, a chain from the body outwards, and behind how
-/// many of them each link is that hangs on the body.
+/// many of them each link is that hangs on the body. Those of rotors are not among them.
 struct Joints {
   std::vector<uav::Joint> chain;
   std::map<std::string, std::size_t> behind;
 };
 Joints read_joints(const SdfSource& source, const sdf::Model& model, const std::string& body,
-                   const uav::Pose& X_BM);
+                   const uav::Pose& X_BM, const std::set<std::string>& of_rotors);
 
 uav::Pose start_pose(const UavPlacement& placement);
 /// The UAV of a model file, without a name or place.

@@ -32,7 +32,7 @@ std::optional<uav::Joint> read_joint(const SdfSource& source, const sdf::Joint& 
 }  // namespace
 
 Joints read_joints(const SdfSource& source, const sdf::Model& model, const std::string& body,
-                   const uav::Pose& X_BM) {
+                   const uav::Pose& X_BM, const std::set<std::string>& of_rotors) {
   Joints found;
   found.behind[body] = 0;
   bool has_grown = true;
@@ -55,6 +55,7 @@ Joints read_joints(const SdfSource& source, const sdf::Model& model, const std::
       }
       const std::size_t count = found.chain.size();
       if (!has_parent || parent->second != count || count == uav::kMaxJoints) continue;
+      if (of_rotors.contains(joint.Name())) continue;
       if (auto next = read_joint(source, joint, X_BM)) {
         found.chain.push_back(std::move(*next));
         add(joint.ChildLinkName(), count + 1);

@@ -112,6 +112,28 @@ void add_sensors(const SdfSource& source, const sdf::Link& link, const uav::Pose
   }
 }
 
+/// What a part behind joints weighs joins the body, as if the part were held at 0. It is balanced:
+/// the centre of mass stays where it is.
+void add_mass(const Link& part, const uav::Pose& X_BL, Uav& uav) {
+  const uav::Pose X_BI = X_BL * part.X_LI;
+  const uav::Vec3 own = part.inertia_kg_m2;
+  const double m = part.mass_kg;
+  const double axes[] = {own.x, own.y, own.z};
+  const uav::Vec3 columns[] = {rotate(X_BI.q, {1, 0, 0}), rotate(X_BI.q, {0, 1, 0}),
+                               rotate(X_BI.q, {0, 0, 1})};
+  const double squared_m2 = dot(X_BI.p, X_BI.p);
+  uav::Vec3 inertia = uav.airframe.inertia_kg_m2;
+  for (double uav::Vec3::*axis : {&uav::Vec3::x, &uav::Vec3::y, &uav::Vec3::z}) {
+    inertia.*axis += m * (squared_m2 - X_BI.p.*axis * X_BI.p.*axis);
+    for (std::size_t i = 0; i < 3; ++i)
+      inertia.*axis += axes[i] * columns[i].*axis * columns[i].*axis;
+  }
+  uav.airframe.mass_kg += m;
+  uav.airframe.inertia_kg_m2 = inertia;
+  uav.body.mass_kg = uav.airframe.mass_kg;
+  uav.body.inertia_kg_m2 = inertia;
+}
+
 /// Visuals, collisions and sensors of a link that hangs on the body, behind so many joints; drawn
 /// as if these were at 0.
 /// @param is_weighed the body's mass contains it; else the body's inertia is, as it is written,
@@ -131,10 +153,11 @@ void merge_link(const SdfSource& source, const sdf::Link& part, const uav::Pose&
     uav.body.collisions.push_back(std::move(collision));
   }
   add_sensors(source, part, X_BL, joints, warn, uav);
-  // The airframe's mass is that of all links: only a payload that the body does not include flies
-  // differently. A link without a mass has SDF's, which nobody weighed.
+  // The body's mass is that of all that is fixed to it: only a payload that it does not include
+  // flies differently. A link without a mass has SDF's, which nobody weighed.
   const sdf::ElementPtr inertial = part.Element()->FindElement("inertial");
   if (!inertial || is_weighed) return;
+  if (joints > 0) return add_mass(link, X_BL, uav);
   const bool is_heavy =
       inertial->HasElement("mass") && link.mass_kg > kLightPart * uav.airframe.mass_kg;
   warn_at(source, part.Element(), Effect(Consequence::kBehavesDifferent, is_heavy),
@@ -144,7 +167,7 @@ void merge_link(const SdfSource& source, const sdf::Link& part, const uav::Pose&
 void add_links(const SdfSource& source, const sdf::Model& model, const sdf::Link& body,
                const WarningSink& warn, Uav& uav) {
   const uav::Pose X_BM = uav::inverse(uav.body.X_ML);
-  Joints joints = read_joints(source, model, body.Name(), X_BM);
+  Joints joints = read_joints(source, model, body.Name(), X_BM, {});
   uav.joints = std::move(joints.chain);
   for (std::uint64_t i = 0; i < model.LinkCount(); ++i) {
     const sdf::Link& link = *model.LinkByIndex(i);
@@ -197,9 +220,11 @@ Uav read_uav(const SdfSource& source, double gravity_m_s2, const WarningSink& wa
   const uav::Pose X_BM = uav::inverse(uav.body.X_ML);
   add_sensors(source, *body.link, X_BM * X_ML, 0, warn, uav);
   if (is_welded) {
+    Joints joints = read_joints(source, *model, body.name, X_BM, of_rotors);
+    uav.joints = std::move(joints.chain);
     for (const Part& part : parts)
       if (part.link != body.link)
-        merge_link(source, *part.link, X_BM * part.X_MN, 0, true, warn, uav);
+        merge_link(source, *part.link, X_BM * part.X_MN, joints.behind[part.name], true, warn, uav);
   } else {
     add_links(source, *model, *body.link, warn, uav);
   }

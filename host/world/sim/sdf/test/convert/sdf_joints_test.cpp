@@ -54,6 +54,22 @@ TEST_F(SdfJoints, WithLimitsAreAChainThatTurnsSensors) {
   EXPECT_LT(norm(sensor(uav, "eye2").X_BS.p - Vec3{0.15, 0, -0.2}), 1e-12);
 }
 
+// The head of 0.1 kg is turned by 90° about z: its own x lies along the body's y.
+TEST_F(SdfJoints, CarryPartsWhoseMassJoinsTheBody) {
+  const Uav light = read(gimbal());
+  const std::string heavy = with(
+      gimbal(), "<link name='head'><pose>0.1 0 -0.2 0 0 0</pose>",
+      "<link name='head'><pose>0.1 0 -0.2 0 0 1.5707963267948966</pose><inertial><mass>0.1</mass>"
+      "<inertia><ixx>0.001</ixx><iyy>0.002</iyy><izz>0.0025</izz></inertia></inertial>");
+  const Uav uav = read(heavy);
+  EXPECT_THAT(warnings(heavy), IsEmpty());
+  EXPECT_DOUBLE_EQ(uav.airframe.mass_kg, light.airframe.mass_kg + 0.1);
+  EXPECT_EQ(uav.body.mass_kg, uav.airframe.mass_kg);
+  const Vec3 gained = uav.airframe.inertia_kg_m2 - light.airframe.inertia_kg_m2;
+  EXPECT_LT(norm(gained - Vec3{0.002 + 0.1 * 0.04, 0.001 + 0.1 * 0.05, 0.0025 + 0.1 * 0.01}),
+            1e-12);
+}
+
 TEST_F(SdfJoints, OfOtherKindsAreWarnedOfAndTheirLinksLeftOut) {
   const std::string sensors = gimbal(R"(
     <link name='wheel'/><joint name='axle' type='revolute'><parent>body</parent><child>wheel</child>

@@ -95,6 +95,33 @@ TEST_F(SdfMotors, TurnLinksThatWeighTheirOwn) {
   EXPECT_THAT(warnings(with_motor_models()), Not(Contains(HasSubstr("joint"))));
 }
 
+// A rotor's joint with limits is still no gimbal.
+TEST_F(SdfMotors, LeaveJointsThatProgramsTurn) {
+  const std::string limits =
+      "<limit><lower>-1</lower><upper>1</upper><velocity>2</velocity></limit></axis></joint>\n";
+  const std::string uav_file =
+      with(with(with_motor_models(), "<axis><xyz>0 0 1</xyz></axis></joint>\n",
+                "<axis><xyz>0 0 1</xyz>" + limits),
+           "</model>",
+           "<link name='head'><pose>0.1 0 0.2 0 0 0</pose><inertial><mass>0.1</mass><inertia>"
+           "<ixx>1e-5</ixx><iyy>1e-5</iyy><izz>1e-5</izz></inertia></inertial>"
+           "<sensor name='nose' type='ray'><ray><scan><horizontal><samples>1</samples>"
+           "<resolution>1</resolution><min_angle>0</min_angle><max_angle>0</max_angle></horizontal>"
+           "</scan><range><min>0.1</min><max>5</max></range></ray></sensor></link>"
+           "<joint name='tilt' type='revolute'><parent>base_link</parent><child>head</child>"
+           "<axis><xyz>0 1 0</xyz>" +
+               limits + "</model>");
+  const Uav uav = read(uav_file);
+  EXPECT_DOUBLE_EQ(uav.airframe.mass_kg, 2.1);
+  ASSERT_EQ(uav.joints.size(), 1u);
+  EXPECT_EQ(uav.joints[0].name, "tilt");
+  ASSERT_EQ(uav.sensors.size(), 2u);
+  EXPECT_EQ(uav.sensors[0].joints, 0u) << uav.sensors[0].name;
+  EXPECT_EQ(uav.sensors[1].joints, 1u) << uav.sensors[1].name;
+  EXPECT_LT(norm(uav.joints[0].p_BJ - uav.sensors[1].X_BS.p), 1e-12);
+  EXPECT_THAT(warnings(uav_file), Not(Contains(HasSubstr("joint"))));
+}
+
 /// Rotors of ArduPilot's models: two blades each, and in a model that is nested.
 std::string with_channels(const std::string& cp = "0.1 0 0") {
   std::string content = "<model name='inner'>" + frame() + "</model>\n";
