@@ -226,6 +226,26 @@ TEST_P(SimulatorContract, NavigationSensorsMeasureTheGroundTruth) {
   EXPECT_NEAR(barometer.altitude_m, 300.0 + truth.p_WB.z, 1e-6);
 }
 
+// Without noise: the acceleration of the last step, with gravity, and the rate of rotation.
+TEST_P(SimulatorContract, AnImuMeasuresTheMotionOfTheLastStep) {
+  World world = test_world();
+  world.uavs[0].sensors[kImu] = {"imu", {}, 0.0, ImuModel{}};
+  const Duration step = world.step;
+  const uav::Vec3 at_rest_W = felt_at_rest(world);
+  const auto simulator = make(std::move(world));
+  simulator->apply(0, uav::to_setpoint({{1.0, 0.5, 0.0}, 0.8}));
+  simulator->advance_to(at(std::chrono::milliseconds(200)));
+  const uav::BodyState before = simulator->ground_truth(0).body;
+  simulator->advance_to(simulator->now() + step);
+  const uav::BodyState truth = simulator->ground_truth(0).body;
+  const auto imu = measure_now<uav::ImuSample>(*simulator, kImu);
+  const uav::Vec3 a_W = (1.0 / to_seconds(step)) * (truth.v_WB - before.v_WB);
+  EXPECT_GT(norm(a_W), 0.5);
+  EXPECT_LT(norm(rotate(truth.q_WB, imu.specific_force_m_s2) - a_W - at_rest_W), 1e-6);
+  EXPECT_LT(norm(imu.angular_velocity_rad_s - truth.w_WB_B), 1e-9);
+  EXPECT_LT(norm(rotate(imu.q_WS, {1, 0, 0}) - rotate(truth.q_WB, {1, 0, 0})), 1e-9);
+}
+
 // The UAV turns: the first column of a spinning lidar was measured earlier, with another heading.
 TEST_P(SimulatorContract, AScanMeasuresEachColumnInItsOwnInstant) {
   World world = test_world();
