@@ -23,7 +23,7 @@ class SizeAxis {
   using Trial = std::pair<std::string, std::string>;
   virtual ~SizeAxis() = default;
 
-  scenario::Campaign campaign{};
+  scenario::Campaign campaign;
   std::vector<Trial> levels{};  ///< of the search, then others to fly beside it
   std::size_t searched = 0;     ///< so many of them are of the search
   std::string folder{};         ///< of the flights, in out/size, if the user names none
@@ -35,8 +35,10 @@ class SizeAxis {
   virtual bool add(std::size_t level, const campaign::TrialResult& trial) = 0;
   /// What to fly beside the search, once that has an answer.
   virtual std::vector<sizing::Wanted> also() const { return {}; }
+  /// @param is_interrupted before there was an answer: what is known from the flights so far.
   virtual report::SizeAnswer answer(const campaign::Settings& settings,
-                                    const std::vector<std::string>& not_flown) = 0;
+                                    const std::vector<std::string>& not_flown,
+                                    bool is_interrupted) = 0;
 
  protected:
   /// Of this scenario, with a seed for each flight that may be flown.

@@ -58,13 +58,17 @@ int find(const SizeOptions& options, const std::stop_token& stop) {
   const std::filesystem::path out =
       options.out.empty() ? std::filesystem::path("out/size") / axis->folder : options.out;
   SizeTrials trials(options, *axis, out, stop);
-  if (const auto end = trials.fly(); end != sizing::SearchEnd::kAnswered)
-    return trials.say_why(end);
-  const report::SizeAnswer answer = axis->answer(trials.settings(), trials.not_flown());
+  const sizing::SearchEnd end = trials.fly();
+  const bool is_answered = end == sizing::SearchEnd::kAnswered;
+  const bool is_interrupted = end == sizing::SearchEnd::kInterrupted;
+  const int why = is_answered ? 0 : trials.say_why(end);
+  if (!is_answered && !(is_interrupted && trials.flown() >= sizing::kLeastFlights)) return why;
+  const report::SizeAnswer answer =
+      axis->answer(trials.settings(), trials.not_flown(), is_interrupted);
   write_answer(answer, out);
   if (!options.junit.empty())
     os::write_file_atomically(options.junit, report::to_junit(answer, out));
-  return code_of(answer);
+  return is_answered ? code_of(answer) : why;
 }
 
 int size(const SizeOptions& options, const std::stop_token& stop) {

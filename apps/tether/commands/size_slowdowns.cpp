@@ -139,15 +139,18 @@ class SlowdownAxis final : public SizeAxis {
     return same;
   }
   report::SizeAnswer answer(const campaign::Settings& settings,
-                            const std::vector<std::string>& not_flown) override {
+                            const std::vector<std::string>& not_flown,
+                            bool is_interrupted) override {
     report_.settings = settings;
     report_.not_flown = not_flown;
-    sized_.front().sized.answer = sized_.front().sizing.latest();
+    report_.is_interrupted = is_interrupted;
+    sized_.front().sized.answer =
+        is_interrupted ? sized_.front().sizing.answer(true) : sized_.front().sizing.latest();
     if (sized_.size() > 1) sized_.back().sized.answer = sized_.back().sizing.answer(true);
     for (auto& [sizing, sized, flown] : sized_)
       sized.curve = report::curve_points(sizing.curve(), report_.question);
     report_.synchronised = sized_.front().sized;
-    if (sized_.size() > 1) report_.unsynchronised = sized_.back().sized;
+    if (sized_.size() > 1 && !is_interrupted) report_.unsynchronised = sized_.back().sized;
     report_.pace = report::pace_near_answer(report_);
     return report::size_answer(report_);
   }

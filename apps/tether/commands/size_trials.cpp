@@ -11,6 +11,7 @@
 #include "terminal/say.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <utility>
 
@@ -65,11 +66,10 @@ void require_enough_trials(const SizeOptions& options, double miss) {
                             options.confidence, least));
 }
 
-SizeAxis::SizeAxis(const SizeOptions& options, const scenario::Scenario& scenario) {
-  campaign.file = scenario.file;
-  campaign.name = std::string(kSizePrefix) + scenario.name;
-  campaign.description = scenario.description;
-  for (std::uint64_t seed = 1; seed <= options.max_trials; ++seed) campaign.seeds.push_back(seed);
+SizeAxis::SizeAxis(const SizeOptions& options, const scenario::Scenario& scenario)
+    : campaign(scenario::campaign_of(scenario, {}, options.max_trials)) {
+  campaign.name.insert(0, kSizePrefix);
+  campaign.scenarios.clear();
 }
 
 SizeTrials::SizeTrials(const SizeOptions& options, SizeAxis& axis, const std::filesystem::path& out,
@@ -124,6 +124,7 @@ sizing::SearchEnd SizeTrials::fly() {
         static_cast<std::size_t>(std::ranges::find(axis_.levels, trial) - axis_.levels.begin());
     if (level < axis_.searched) earlier.push_back({level, plan.seed});
   }
+  start_ = std::chrono::steady_clock::now();
   const scenario::Scenario& last = campaign_.scenarios.back().scenario;
   const campaign::TrialPlan any{
       &last, last.find_condition(campaign_.scenarios.back().conditions.front()), 0, {}};
@@ -158,6 +159,7 @@ bool SizeTrials::run(std::span<const sizing::Wanted> flights) {
                 .interrupted;
   }();
   line_.clear();
+  flown_here_ += plans.size();
   return is_whole;
 }
 
@@ -174,15 +176,27 @@ sizing::Flown SizeTrials::take(const sizing::Wanted& wanted) {
   return {.is_copy = axis_.add(wanted.level, trial), .lacks_value = !why.empty()};
 }
 
+std::string SizeTrials::left(std::size_t of_this_batch) const {
+  const std::optional<std::size_t> flights = axis_.search().flights_left();
+  const std::size_t here = flown_here_ + of_this_batch;
+  if (!flights || here == 0) return "";
+  const std::size_t most = options_.max_trials - std::min<std::size_t>(options_.max_trials, flown_);
+  const auto left = static_cast<double>(std::min(*flights, most));
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start_;
+  const double each_s = taken.count() / static_cast<double>(here);
+  return fmt::format("; perhaps {:.0f} more, {:.0f} min", left, std::ceil(left * each_s / 60.0));
+}
+
 void SizeTrials::show(const campaign::CampaignProgress& progress) {
   if (os::terminal_columns(STDERR_FILENO) > 0) {
     if (progress.latest == nullptr) return;
-    line_.show(fmt::format("{}, at most {}; {}; flying {}",
+    line_.show(fmt::format("{}, at most {}; {}{}; flying {}",
                            counted(flown_ + progress.done, "flight"), options_.max_trials,
-                           axis_.search().so_far(), text_of(*progress.latest)));
+                           axis_.search().so_far(), left(progress.done),
+                           text_of(*progress.latest)));
   } else if (progress.result != nullptr) {
-    say("{}  {}: {}; {}\n", flown_ + progress.done, text_of(*progress.latest),
-        campaign::name(progress.result->outcome), axis_.search().so_far());
+    say("{}  {}: {}; {}{}\n", flown_ + progress.done, text_of(*progress.latest),
+        campaign::name(progress.result->outcome), axis_.search().so_far(), left(progress.done));
   }
 }
 

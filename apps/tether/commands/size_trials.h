@@ -3,6 +3,7 @@
 #include "commands/size_axis.h"
 #include "terminal/status_line.h"
 
+#include <chrono>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -31,6 +32,8 @@ class SizeTrials {
   /// Takes the flights that the folder had, in the order of `plan_trials`, then flies until there
   /// is an answer, and what the axis wants beside it.
   sizing::SearchEnd fly();
+  /// Flights that did not fail.
+  std::size_t flown() const { return flown_; }
   /// One line for each flight that failed, which says nothing about the computer.
   const std::vector<std::string>& not_flown() const { return not_flown_; }
   /// For a call that ends without an answer: says why, and how to go on. @return the exit code.
@@ -43,6 +46,8 @@ class SizeTrials {
   bool run(std::span<const sizing::Wanted> flights);  // what is missing of them. False: interrupted
   sizing::Flown take(const sizing::Wanted& wanted);
   void show(const campaign::CampaignProgress& progress);
+  // "; perhaps 40 more, 3 min" or "", from the flights of this call, for the progress only.
+  std::string left(std::size_t of_this_batch) const;
 
   const SizeOptions& options_;
   SizeAxis& axis_;
@@ -58,6 +63,8 @@ class SizeTrials {
   std::map<std::filesystem::path, const campaign::TrialPlan*> missing_;  // by its folder
   StatusLine line_;
   std::size_t flown_ = 0;
+  std::size_t flown_here_ = 0;  // in this call, failed ones too
+  std::chrono::steady_clock::time_point start_{};
   // Why the first flight that missed a limit for want of a value has none.
   std::string why_without_value_;
   std::vector<std::string> not_flown_;

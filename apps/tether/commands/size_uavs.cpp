@@ -98,10 +98,13 @@ class UavsAxis final : public SizeAxis {
     return is_copy;
   }
   report::SizeAnswer answer(const campaign::Settings& settings,
-                            const std::vector<std::string>& not_flown) override {
-    report_.answer = search_.answer();
+                            const std::vector<std::string>& not_flown,
+                            bool is_interrupted) override {
     report_.settings = settings;
     report_.not_flown = not_flown;
+    report_.is_interrupted = is_interrupted;
+    search_.next_levels(0);
+    report_.answer = search_.answer();
     report_.pace = report::pace_at_limit(report_);
     return report::size_answer(report_);
   }

@@ -36,12 +36,13 @@ TEST_F(Size, FindsTheSlowestSufficientComputerAlsoAfterCtrlC) {
   write_hover_scenario(folder_.path(), "good", {kScripted, limit("3.5")});
   const std::vector<std::string> options = {"--between", "1,20", "--junit", folder_ / "size.xml"};
   Process process(size(options));
-  ASSERT_TRUE(process.wait_for_err("seed 2:", kLongest)) << process.err();
+  ASSERT_TRUE(process.wait_for_err("seed 12:", kLongest)) << process.err();
   process.signal(SIGINT);
   const Output interrupted = process.wait(15s);
   EXPECT_EQ(interrupted.code, 3);
   EXPECT_THAT(interrupted.err, HasSubstr("--resume"));
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "out/size.json"));
+  EXPECT_THAT(interrupted.out, HasSubstr("because the search was interrupted"));
+  EXPECT_EQ(answer()["interrupted"], true);
 
   const Output resumed = run(with(size(options), {"--resume"}), kLongest);
   EXPECT_EQ(resumed.code, 0) << resumed.err;
@@ -54,6 +55,7 @@ TEST_F(Size, FindsTheSlowestSufficientComputerAlsoAfterCtrlC) {
               AllOf(StartsWith("Not met: "), HasSubstr("time required ≤ 3.5 s")));
   EXPECT_EQ(found["question"]["between"], (nlohmann::json{1.0, 20.0}));
   EXPECT_EQ(found["answer"]["where"], "within");
+  EXPECT_EQ(found["interrupted"], false);
   EXPECT_EQ(found["answer"]["narrow"], true);
   EXPECT_EQ(found["answer"]["basis"], "margins");
   EXPECT_GT(found["answer"]["low"], 1.5);

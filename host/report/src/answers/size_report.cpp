@@ -254,9 +254,10 @@ std::vector<Answer> size_answers(const SizeReport& report) {
   if (!answer.is_narrow)
     answers.push_back(
         {"Less sure than asked",
-         fmt::format(": the interval is wider than a factor of {}, because {}.",
-                     digits(report.question.interval),
-                     copies >= sizing::kMostCopies ? "the seeds change too little"
+         fmt::format(": the interval is wider than a factor of {:.3g}, because {}.",
+                     report.question.interval,
+                     report.is_interrupted           ? "the search was interrupted"
+                     : copies >= sizing::kMostCopies ? "the seeds change too little"
                      : report.synchronised.flights.size() + copies + report.not_flown.size() >=
                              report.most_flights
                          ? fmt::format("no more than {} were allowed",
@@ -280,7 +281,7 @@ std::vector<std::string> size_advice(const SizeReport& report) {
   const bool is_exhausted = !answer.is_narrow && report.synchronised.copies >= sizing::kMostCopies;
   if (is_exhausted || is_one_start(report.synchronised))
     advice.emplace_back(kVarySeeds);
-  else if (!answer.is_narrow)
+  else if (!answer.is_narrow && !report.is_interrupted)
     advice.emplace_back("Fly more: `--max-trials`, with `--resume`.");
   if (success_gap(report))
     advice.emplace_back(
@@ -290,8 +291,8 @@ std::vector<std::string> size_advice(const SizeReport& report) {
         return verdict(board, report) == BoardVerdict::kDoesNot;
       });
   // Where the flights do not show that speed matters, no stage is to blame.
-  const bool has_limit =
-      !answer.is_above && (!answer.is_below || speed_matters(report.synchronised));
+  const bool has_limit = !answer.is_above && !shows_no_sufficient(report.synchronised) &&
+                         (!answer.is_below || speed_matters(report.synchronised));
   if (has_limit && report.pace.pace && !report.pace.pace->stages.empty()) {
     const timing::StageRow& stage = report.pace.pace->stages.front();
     advice.push_back(fmt::format("{}“{}” first: it takes {:.0f} % of the computing time.",

@@ -134,7 +134,8 @@ std::vector<Answer> uavs_answers(const UavsReport& report) {
   const std::size_t copies = copies_in(report);
   if (!report.answer.is_decided())
     answers.push_back(
-        {"Less sure than asked", copies >= sizing::kMostCopies
+        {"Less sure than asked", report.is_interrupted ? ": the search was interrupted."
+                                 : copies >= sizing::kMostCopies
                                      ? ": the seeds change too little."
                                      : fmt::format(": no more than {} were allowed.",
                                                    counted(report.most_flights, "flight"))});
@@ -155,7 +156,7 @@ std::size_t copies_in(const UavsReport& report) {
 std::vector<std::string> uavs_advice(const UavsReport& report) {
   std::vector<std::string> advice;
   const sizing::UavAnswer& answer = report.answer;
-  if (!answer.is_decided())
+  if (!answer.is_decided() && !report.is_interrupted)
     advice.emplace_back(copies_in(report) >= sizing::kMostCopies
                             ? kVarySeeds
                             : "Fly more: `--max-trials`, with `--resume`.");

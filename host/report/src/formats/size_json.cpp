@@ -93,6 +93,7 @@ std::string size_json(const SizeReport& report) {
   json["boards"] = Json::array();
   for (const Board& board : report.boards) json["boards"].push_back(json_of(board, report));
   if (report.unsynchronised) json["unsynchronised"] = json_of(*report.unsynchronised);
+  json["interrupted"] = report.is_interrupted;
   json["not_flown"] = report.not_flown;
   json["settings"] = report.settings;
   return text_of(json);
@@ -120,6 +121,7 @@ std::string size_json(const UavsReport& report) {
         {"decided", report.answer.is_decided()}}},
       {"levels", Json::array()},
       {"flights", Json::array()},
+      {"interrupted", report.is_interrupted},
       {"not_flown", report.not_flown},
       {"settings", report.settings}};
   for (const sizing::UavLevel& level : uav_levels(report.points)) {

@@ -11,7 +11,6 @@
 namespace tether::sizing {
 namespace {
 
-constexpr std::size_t kLeastFlights = 12;  // so that chance outcomes of the first do not decide
 constexpr double kLeastFit = 0.01;
 // Every fourth flight looks for slowdowns below the threshold that are not sufficient.
 constexpr std::size_t kOneOf = 4;
@@ -153,8 +152,20 @@ std::string Sizing::so_far() const {
   const Threshold& threshold = latest_.threshold;
   const bool is_bounded = threshold.low > 0.0 || std::isfinite(threshold.high);
   return threshold.estimate > 0.0 && is_bounded
-             ? fmt::format("so far about {:.2g} times slower", threshold.estimate)
+             ? fmt::format("so far about {:.2g} times slower{}", threshold.estimate,
+                           basis_ == Basis::kLevels ? ", by neighbourhoods: no curve fits" : "")
              : "no limit is known yet";
+}
+
+std::optional<std::size_t> Sizing::flights_left() const {
+  const Threshold& threshold = latest_.threshold;
+  const bool is_bounded = threshold.low > 0.0 && std::isfinite(threshold.high);
+  if (basis_ == Basis::kLevels || !is_bounded || flights_.size() < kLeastFlights)
+    return std::nullopt;
+  const double wider =
+      std::log(threshold.high / threshold.low) / std::log(grid_.question().interval);
+  const double more = static_cast<double>(flights_.size()) * std::max(wider * wider - 1.0, 0.0);
+  return static_cast<std::size_t>(std::ceil(more));
 }
 
 }  // namespace tether::sizing

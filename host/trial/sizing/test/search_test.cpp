@@ -111,6 +111,7 @@ TEST(Search, AnswersOnBothAxes) {
   const CurveGrid grid({.interval = 1.6, .least = 1.0, .most = 20.0});
   Sizing by_slowdown(grid, false);
   EXPECT_EQ(by_slowdown.so_far(), "no limit is known yet");
+  EXPECT_EQ(by_slowdown.flights_left(), std::nullopt);
   const auto fly_slowed = [&](const Wanted& wanted) {
     const double slowdown = grid.slowdowns()[wanted.level];
     by_slowdown.add({slowdown, slowdown <= 3.0});
@@ -120,6 +121,7 @@ TEST(Search, AnswersOnBothAxes) {
   EXPECT_TRUE(by_slowdown.latest().is_narrow);
   EXPECT_NEAR(by_slowdown.latest().threshold.estimate, 3.0, 0.4);
   EXPECT_EQ(by_slowdown.so_far().substr(0, 12), "so far about");
+  EXPECT_EQ(by_slowdown.flights_left(), 0U) << "the answer is as narrow as asked";
 }
 
 }  // namespace

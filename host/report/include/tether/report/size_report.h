@@ -64,6 +64,7 @@ struct SizeReport {
   PaceOrReason pace{};                   ///< of the flight whose slowdown is nearest to the answer
   std::vector<std::string> not_flown{};  ///< one line for each flight that failed, with its reason
   campaign::Settings settings{};
+  bool is_interrupted = false;  ///< before there was an answer
 };
 
 /// Whether programs waited or computed in ways that Tether does not see, so that there is no
@@ -124,6 +125,7 @@ struct UavsReport {
   PaceOrReason pace{};
   std::vector<std::string> not_flown{};  ///< one line for each flight that failed, with its reason
   campaign::Settings settings{};
+  bool is_interrupted = false;  ///< before there was an answer
 };
 
 /// @return whether the flight is a copy of an earlier one, which does not count. @pre the trial did

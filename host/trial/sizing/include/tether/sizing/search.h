@@ -21,6 +21,8 @@ class Axis {
   virtual std::vector<std::size_t> next_levels(std::size_t most) = 0;
   /// What flights have shown so far, for the progress.
   virtual std::string so_far() const = 0;
+  /// Roughly how many flights are still needed, if that can be told.
+  virtual std::optional<std::size_t> flights_left() const { return std::nullopt; }
 };
 
 /// A flight. Each has a seed of its own: flights with the same seed succeed and fail together, and

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -9,6 +10,9 @@
 #include <tether/sizing/success_curve.h>
 
 namespace tether::sizing {
+
+/// With fewer flights, chance outcomes would decide.
+inline constexpr std::size_t kLeastFlights = 12;
 
 /// On what an answer rests.
 enum class Basis {
@@ -56,6 +60,8 @@ class Sizing final : public Axis {
   std::vector<double> next(std::size_t count) const;
   std::vector<std::size_t> next_levels(std::size_t most) override;
   std::string so_far() const override;
+  /// The width of an interval falls with the square root of the number of flights.
+  std::optional<std::size_t> flights_left() const override;
   /// As of the last call of `next_levels`.
   const Answer& latest() const { return latest_; }
   /// The curve of the answer; of kLevels, that of reached and missed goals.
