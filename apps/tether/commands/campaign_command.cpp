@@ -44,7 +44,9 @@ namespace tether::app {
 namespace {
 
 struct CampaignOptions {
-  std::filesystem::path campaign;
+  std::filesystem::path campaign;              ///< or a scenario
+  std::vector<std::string> conditions;         ///< of a scenario
+  std::optional<int> trials;                   ///< of a scenario
   std::vector<std::filesystem::path> collect;  ///< folders of a campaign
   std::filesystem::path listed;                ///< a list of an engine's shards
   std::filesystem::path out;
@@ -56,13 +58,35 @@ struct CampaignOptions {
   std::filesystem::path junit;
 };
 
-/// The campaign, with the simulator of the options in all conditions if one is given.
+constexpr int kTrialsOfScenario = 10;
+
+/// The campaign of the file, or that of a scenario.
+scenario::Campaign read(const CampaignOptions& options, const scenario::ShippedFiles& shipped) {
+  using scenario::ShippedKind;
+  const std::string given = options.campaign.string();
+  const bool is_scenario_name = !shipped.has(ShippedKind::kCampaign, given) &&
+                                shipped.has(ShippedKind::kScenario, given) &&
+                                !std::filesystem::exists(options.campaign);
+  const std::filesystem::path file =
+      shipped.find(is_scenario_name ? ShippedKind::kScenario : ShippedKind::kCampaign, given);
+  if (kind_of(file) == FileKind::kScenario)
+    return scenario::campaign_of(
+        scenario::load_scenario(file), options.conditions,
+        static_cast<std::size_t>(options.trials.value_or(kTrialsOfScenario)));
+  require_kind(file, FileKind::kCampaign);
+  for (const auto& [option, is_given] :
+       {std::pair{"--condition", !options.conditions.empty()}, {"--trials", !!options.trials}})
+    if (is_given)
+      refuse_option(option, fmt::format("is for a scenario, and {} is a campaign, whose file says "
+                                        "what is flown.",
+                                        file.string()));
+  return scenario::load_campaign(file);
+}
+
+/// The same, with the simulator of the options in all conditions if one is given.
 scenario::Campaign load(const CampaignOptions& options) {
   const auto shipped = scenario::ShippedFiles::of_program(os::own_file());
-  const std::filesystem::path file =
-      shipped.find(scenario::ShippedKind::kCampaign, options.campaign);
-  require_kind(file, FileKind::kCampaign);
-  scenario::Campaign campaign = scenario::load_campaign(file);
+  scenario::Campaign campaign = read(options, shipped);
   for (auto& entry : campaign.scenarios)
     entry.scenario.world_options = world_options(options.reading, shipped);
   if (options.simulator.empty()) return campaign;
@@ -172,8 +196,13 @@ std::string how_to_continue(const CampaignOptions& options, const std::filesyste
                            : options.engine.engine.empty()
                                ? "--resume"
                                : "--resume --engine " + options.engine.engine;
-  return fmt::format("to continue, type: tether campaign {} --out {} {}",
-                     os::shell_word(options.campaign.string()), os::shell_word(out.string()), part);
+  std::string scenario;
+  for (const std::string& name : options.conditions)
+    scenario += " --condition " + os::shell_word(name);
+  if (options.trials) scenario += fmt::format(" --trials {}", *options.trials);
+  return fmt::format("to continue, type: tether campaign {}{} --out {} {}",
+                     os::shell_word(options.campaign.string()), scenario,
+                     os::shell_word(out.string()), part);
 }
 
 /// Whether a trial failed, or says nothing because of a doubt: in this part or in earlier ones.
@@ -247,7 +276,18 @@ int run_campaign(const CampaignOptions& options, const std::stop_token& stop) {
 
 Options campaign_rows(CampaignOptions& o) {
   return concatenated(
-      {{{"campaign", "Name of a shipped campaign, or a file (TOML)", &o.campaign},
+      {{{"campaign",
+         "Name of a shipped campaign, or a file (TOML); or a scenario, of which all conditions are "
+         "flown",
+         &o.campaign},
+        {"--condition NAME",
+         "Of a scenario: fly this condition; can be repeated [all of its conditions]",
+         &o.conditions,
+         {.is_one_each = true}},
+        {"--trials",
+         fmt::format("Of a scenario: flights for each condition, with the seeds 1, 2, … [{}]",
+                     kTrialsOfScenario),
+         &o.trials, range(1, 100'000)},
         {"--out FOLDER", "Folder for the trials [out/campaigns/CAMPAIGN]", &o.out},
         {"--shard K/N",
          "Fly only part K of N: each N-th seed, from the K-th on. Other parts can be flown at the "
@@ -276,6 +316,7 @@ has no answer, or the campaign was interrupted.
 
 Examples:
   tether campaign face_anchor --out out/campaign
+  tether campaign follow_moving --condition host --condition target --trials 20
   tether campaign face_anchor --out out/campaign --resume
   tether campaign face_anchor --out /shared/campaign --engine slurm --engine-option "options=--time=2:00:00"
   tether campaign face_anchor --out part3 --shard 3/8

@@ -66,6 +66,22 @@ TEST_F(Campaign, RunsEveryTrialReportsAndResumesWithWhatIsMissing) {
 }
 
 // The SUT is a script, given to its shell as an argument, and edits a file.
+TEST_F(Campaign, FliesAScenarioWithoutAFileOfItsOwn) {
+  const auto fly = [&](const std::vector<std::string>& options) {
+    return run(with(
+        tether({"campaign", folder_ / "hover.toml", "--trials", "2", "--out", folder_ / "alone"}),
+        options));
+  };
+  EXPECT_EQ(fly({"--condition", "host"}).code, 0);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "alone/hover/host/seed-0002/result.json"));
+  const Output of_campaign = run(campaign({"--trials", "2"}));
+  EXPECT_EQ(of_campaign.code, 2);
+  EXPECT_THAT(of_campaign.err, HasSubstr("--trials: is for a scenario"));
+  const Output parent = run(tether({"report", folder_.path()}));
+  EXPECT_EQ(parent.code, 2);
+  EXPECT_THAT(parent.err, HasSubstr("Give one of those in it: " + (folder_ / "alone").string()));
+}
+
 TEST_F(Campaign, EndsWhenAFileIsEditedMeanwhile) {
   const std::string scenario = folder_ / "hover.toml", program = bad_sut_program();
   write_text(folder_ / "sut.sh",

@@ -28,6 +28,15 @@ std::string size_command(const ConditionVerdict& condition, bool searches_faster
   return "`" + command + "`";
 }
 
+/// "`tether campaign face_anchor --condition target`", for a condition of a scenario's file.
+std::string campaign_command(const ConditionVerdict& condition) {
+  if (!condition.sizing || !condition.sizing->target.empty() || condition.sizing->between)
+    return "`tether campaign SCENARIO --condition NAME`.";
+  return fmt::format("`tether campaign {} --condition {}`",
+                     os::shell_word(condition.sizing->scenario),
+                     os::shell_word(condition.sizing->condition));
+}
+
 /// To find out whether speed matters at all.
 std::string faster_advice(const ConditionVerdict& lead) {
   std::string text = lead.pace && lead.pace->keeps_up()
@@ -51,8 +60,9 @@ std::string threshold_advice(const ConditionVerdict& lead) {
         "(`tether-sut calibrate`), and name it with `tether size SCENARIO --target`.",
         what);
   return fmt::format(
-      "`tether size` finds {}, for conditions of a scenario's file on virtual targets that have a "
-      "limit.",
+      "To find {}: write this flight as a condition of a scenario's file, with a limit to keep, "
+      "and "
+      "give that to `tether size`.",
       what);
 }
 
@@ -109,7 +119,8 @@ std::string by_program(Advice::Kind kind, bool is_as_is) {
        "Let one thread compute at a time (in OpenCV, `cv::setNumThreads(1)`), or fly with `clock = "
        "\"wall\"`, for which threads that compute in parallel count once."},
       {Kind::kQuietMachine,
-       "Fly again while nothing else runs on the machine, or with a counted clock.",
+       "Fly again while nothing else runs on the machine, or with counted work (`clock = "
+       "\"counted\"`), which does not depend on that.",
        "Fly again while nothing else runs on the machine."}};
   const Row& row = *std::ranges::find(kRows, kind, &Row::kind);
   return is_as_is ? row.as_is : row.with_library;
@@ -171,18 +182,17 @@ std::string sentence_of(const Advice& advice, const Verdict& verdict) {
       return threshold_advice(lead) + uavs_advice(lead);
     case Kind::kFlyMore:
       if (lead.planned == 1 && verdict.point.empty())
-        return "One flight shows little. Fly a campaign of several seeds: `tether campaign FILE`; "
-               "`tether list` shows examples.";
+        return "One flight shows little. Fly more, with other seeds: " + campaign_command(lead);
       if (advice.flights == 0)
         return fmt::format("Fly more: the share is so near to {} that {} do not decide it.",
                            kWanted, counted(lead.flown, "flight"));
       return fmt::format(
-          "Fly more: if this share continues, {} decide (`trials` in the campaign's file, then "
-          "`--resume`).",
+          "Fly more: if this share continues, {} decide (`--trials`, or `trials` in the campaign's "
+          "file; then `--resume`).",
           counted(advice.flights, "flight"));
     case Kind::kCompareMore:
       return "Fly both conditions more often, to see whether chance explains the difference "
-             "(`trials` in the campaign's file, then `--resume`).";
+             "(`--trials`, or `trials` in the campaign's file; then `--resume`).";
     case Kind::kGiveValue:
       return "Let the program report what the metric needs, or remove its limit.";
     case Kind::kSetLimit:

@@ -184,7 +184,7 @@ TEST(Verdict, NamesTheCommandThatFindsTheThreshold) {
   EXPECT_THAT(advice(0, campaign::Sizing{"turn", "host", "", std::pair(0.75, 40.0)}),
               EndsWith("host --between 0.75,40`"));
   EXPECT_EQ(advice(0, {}), "To see whether speed matters, fly on a faster computer.");
-  EXPECT_THAT(advice(10, {}), StartsWith("`tether size` finds the headroom"));
+  EXPECT_THAT(advice(10, {}), StartsWith("To find the headroom, "));
 }
 
 // A real board cannot be slowed down.
@@ -341,13 +341,12 @@ TEST(Verdict, SaysWhatAnImageCostsOnASharedBoard) {
               HasSubstr("an image costs 100 ms on “obc”, 48 % of it waiting for the cores that 2 "
                         "programs share, and “detect” takes 81 % of the computing time"));
   verdict.advice.push_back({Advice::Kind::kSpeedUpStage, "detect"});
-  EXPECT_THAT(advice_of({verdict}),
-              testing::Contains(HasSubstr("Computing and waiting for cores take up to")));
+  EXPECT_THAT(advice_of({verdict}).back(), HasSubstr("Computing and waiting for cores take up to"));
   EXPECT_THAT(advice_of({verdict})[1],
               HasSubstr("; to find how many UAVs it carries: `tether size pair --condition "
                         "'one for all' --axis uavs`"));
   EXPECT_THAT(stages_table({verdict}).notes,
-              ElementsAre(HasSubstr(": 100 ms, 48 % of it waiting for the cores of “obc”,")));
+              testing::Contains(HasSubstr(": 100 ms, 48 % of it waiting for the cores of “obc”,")));
 }
 
 TEST(Verdict, OfASweepGroupsItsPointsByTheirRuling) {
@@ -493,7 +492,8 @@ TEST(Verdict, TablesHaveHeadroomIntervalsAndStages) {
   const Table stages = stages_table(verdicts);
   EXPECT_THAT(stages.rows,
               ElementsAre(ElementsAre("target", "detect", "40", "90.000", "0.000", "81.0 %")));
-  EXPECT_THAT(stages.notes, ElementsAre(HasSubstr("Per image of “camera”: 100 ms of computing")));
+  EXPECT_THAT(stages.notes,
+              testing::Contains(HasSubstr("Per image of “camera”: 100 ms of computing")));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <set>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -163,6 +164,23 @@ CampaignScenario read_scenario(const toml::Table& root, const toml::Table& table
 }
 
 }  // namespace
+
+Campaign campaign_of(Scenario scenario, const std::vector<std::string>& conditions,
+                     std::size_t trials) {
+  Campaign campaign{.file = scenario.file,
+                    .name = scenario.name,
+                    .description = scenario.description,
+                    .seeds = consecutive(1, static_cast<std::int64_t>(trials)),
+                    .scenarios = {}};
+  CampaignScenario entry{.scenario = std::move(scenario), .conditions = {}, .paper_table = {}};
+  for (const std::string& name : conditions)
+    entry.conditions.push_back(pick_condition(entry.scenario, name).name);
+  if (conditions.empty())
+    for (const Condition& condition : entry.scenario.conditions)
+      entry.conditions.push_back(condition.name);
+  campaign.scenarios.push_back(std::move(entry));
+  return campaign;
+}
 
 Campaign load_campaign(const std::filesystem::path& file) {
   Campaign campaign;

@@ -46,6 +46,18 @@ TEST_F(LoadCampaign, TakesSeedsAndAllConditions) {
   EXPECT_TRUE(campaign.scenarios[0].profile.empty());
 }
 
+TEST_F(LoadCampaign, AScenarioAloneIsACampaignOfItsConditions) {
+  const Scenario scenario = load_scenario(scratch_.path("scenario.toml"));
+  const Campaign all = campaign_of(scenario, {}, 3);
+  EXPECT_EQ(all.file, scenario.file);
+  EXPECT_THAT(all.seeds, ElementsAre(1u, 2u, 3u));
+  EXPECT_THAT(all.scenarios[0].conditions,
+              ElementsAre("host", "target, no sync", "scripted", "slow machine"));
+  EXPECT_THAT(campaign_of(scenario, {"scripted"}, 1).scenarios[0].conditions,
+              ElementsAre("scripted"));
+  thrown_error(ErrorCode::kUsage, [&] { campaign_of(scenario, {"fast"}, 1); });
+}
+
 TEST_F(LoadCampaign, AppliesItsProfileOnTopOfTheScenarios) {
   const auto file = scratch_.write("top.toml", replaced(kRigProfile, "\"rig\"", "\"top\""));
   const CampaignScenario entry =

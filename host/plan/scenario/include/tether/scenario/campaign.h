@@ -36,4 +36,10 @@ struct Campaign {
 /// @throws Error(kBadFile) as `load_scenario`.
 Campaign load_campaign(const std::filesystem::path& file);
 
+/// A campaign of one scenario, with the seeds 1 to `trials`.
+/// @param conditions names; empty: all of the scenario
+/// @throws Error(kUsage), as pick_condition, if it has no such condition.
+Campaign campaign_of(Scenario scenario, const std::vector<std::string>& conditions,
+                     std::size_t trials);
+
 }  // namespace tether::scenario
