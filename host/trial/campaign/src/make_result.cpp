@@ -57,9 +57,10 @@ void check_companion(const record::Record& record, SutResult& sut, std::vector<W
     return m.uav == sut.uav && m.to_controller && m.outcome == record::kDelivered &&
            !m.name.empty();
   };
+  // A program as it is receives whenever it waits, whether it listens or not.
   const auto is_call = [&](const auto& logged) {
-    return logged.message.uav == sut.uav && logged.message.kind != record::kFinish &&
-           logged.message.kind != record::kSleep;
+    constexpr std::string_view kIdle[] = {record::kFinish, record::kSleep, record::kReceive};
+    return logged.message.uav == sut.uav && std::ranges::count(kIdle, logged.message.kind) == 0;
   };
   const auto doubt = [&](const std::string& what) {
     warnings.push_back({Consequence::kDoubtful, {}, "UAV '" + sut.uav + "'", what});

@@ -293,9 +293,11 @@ TEST_F(MakeResult, ACompanionHasFlownOnlyIfItHasSentSomething) {
   EXPECT_THAT(result.reason, HasSubstr("it did nothing with its UAV"));
   record::Interaction& read = record.interactions.emplace_back().message;
   read.uav = "uav1";
-  read.kind = record::kSleep;
-  result = make(record, kReached);
-  EXPECT_EQ(result.outcome, Outcome::kGoalMissed) << "it only waited";
+  for (const std::string_view waits : {record::kSleep, record::kReceive}) {
+    read.kind = waits;
+    result = make(record, kReached);
+    EXPECT_EQ(result.outcome, Outcome::kGoalMissed) << "it only waited";
+  }
   EXPECT_THAT(to_line(result.warnings.at(0)), HasSubstr("did nothing with it"));
   read.kind = record::kSensor;
   EXPECT_THAT(to_line(make(record, kReached).warnings.at(0)), HasSubstr("sent no message"));
