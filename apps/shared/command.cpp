@@ -6,8 +6,11 @@
 #include <cmath>
 #include <iterator>
 #include <stdexcept>
+#include <string_view>
 #include <type_traits>
 #include <utility>
+
+#include <tether/base/suggest.h>
 
 namespace tether::app {
 
@@ -54,9 +57,19 @@ struct Adding {
   }
 };
 
+/// Suggests the nearest word to one that is not allowed.
+CLI::Validator one_of_these(const std::vector<std::string>& words) {
+  const auto wrong = [words](const std::string& text) -> std::string {
+    if (std::ranges::count(words, text) > 0) return "";
+    const std::vector<std::string_view> allowed(words.begin(), words.end());
+    return "cannot be '" + text + "'; " + allowed_hint(text, allowed);
+  };
+  return {wrong, "{" + CLI::detail::join(words, ",") + "}", ""};
+}
+
 void limit(CLI::Option& option, const Allowed& allowed) {
   if (std::isfinite(allowed.least)) option.check(within(allowed.least, allowed.most));
-  if (!allowed.words.empty()) option.check(CLI::IsMember(allowed.words));
+  if (!allowed.words.empty()) option.check(one_of_these(allowed.words));
   if (allowed.check)
     option.check(CLI::Validator([check = allowed.check](auto& text) { return check(text); }, ""));
   if (allowed.is_required) option.required();

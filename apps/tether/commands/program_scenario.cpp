@@ -120,6 +120,12 @@ Values values_of(const ProgramOptions& options, const std::string& profile,
     command.front() = fs::absolute(command.front()).lexically_normal();
   const std::string controller =
       options.flight_controller.value_or(options.uses_library ? "none" : "built-in");
+  const auto external =
+      std::ranges::find(autopilot::externals(), controller, &autopilot::External::key);
+  if (external != autopilot::externals().end() && !options.controller_path)
+    refuse_option(
+        "--flight-controller",
+        fmt::format("{} needs your build of it. Add --controller-path FOLDER", controller));
   const double limit_s = options.time_limit_s.value_or(kTimeLimit_s);
   const std::string model = options.model.value_or(kModel);
   const Value model_value = file_value(shipped, ShippedKind::kModel, "--model", model);
@@ -237,8 +243,6 @@ ProgramScenario make_program_scenario(const ProgramOptions& options, const std::
       line.replace(line.find('{'), place.size() + 2, value->second.text);
       made.options[number] = value->second.option;
     }
-    // What its table lacks is told at the header.
-    if (place == "flight_controller") made.options[number - 1] = value->second.option;
     made.text += line + "\n";
   }
   return made;

@@ -5,6 +5,7 @@
 #include "terminal/print.h"
 #include "terminal/print_report.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -12,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <tether/base/error.h>
@@ -48,6 +49,23 @@ bool is_run(const std::filesystem::path& folder) {
   throw Error(ErrorCode::kBadFile, {path.string()}, why).about(path.string());
 }
 
+/// " Give one of those in it: out/one, out/two."; empty: there are none.
+std::string inside(const std::filesystem::path& folder) {
+  constexpr std::size_t kMost = 4;
+  std::vector<std::string> found;
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))
+    if (std::filesystem::exists(entry.path() / campaign::kCampaignFile, ignored) ||
+        std::filesystem::exists(entry.path() / campaign::kResultFile, ignored))
+      found.push_back(entry.path().string());
+  if (found.empty()) return "";
+  std::ranges::sort(found);
+  const bool has_more = found.size() > kMost;
+  found.resize(std::min(found.size(), kMost));
+  return fmt::format(" Give one of those in it: {}{}", fmt::join(found, ", "),
+                     has_more ? ", …" : "");
+}
+
 /// Refuses everything but a run or campaign with results. A run that was killed leaves only its
 /// record.
 void require_result(const std::filesystem::path& folder) {
@@ -65,8 +83,8 @@ void require_result(const std::filesystem::path& folder) {
     return;
   const std::filesystem::path record = folder / runner::kRecordFile;
   if (!std::filesystem::exists(record))
-    refuse(folder, fmt::format("is neither a run nor a campaign: it has no {} and no {}.",
-                               campaign::kResultFile, campaign::kCampaignFile));
+    refuse(folder, fmt::format("is neither a run nor a campaign: it has no {} and no {}.{}",
+                               campaign::kResultFile, campaign::kCampaignFile, inside(folder)));
   refuse(folder, fmt::format("this run has no result, because it is still running or was killed. "
                              "To check its record, type: tether audit {}",
                              record.string()));

@@ -131,7 +131,6 @@ TEST_F(ProgramScenarioTest, ErrorsOfTheReaderNameTheOption) {
          o.position_m = {0.0, 0.0, 1e30};
        },
        "--position [0, 0, 1e+30]: "},
-      {[](auto& o) { o.flight_controller = "px4"; }, "--flight-controller px4: "},
       {[](auto& o) {
          o.flight_controller = "px4", o.controller_path = "x", o.starts_in_air = true;
        },
@@ -154,6 +153,12 @@ TEST_F(ProgramScenarioTest, ErrorsOfTheReaderNameTheOption) {
   }
   const Error other(ErrorCode::kBadFile, {"other.toml", 3}, "is wrong");
   EXPECT_STREQ(about_option(other, scratch_.path("scenario.toml"), made()).what(), other.what());
+}
+
+TEST_F(ProgramScenarioTest, AControllerOfYourOwnNeedsItsBuild) {
+  options_.flight_controller = "px4";
+  EXPECT_THAT(thrown_error(ErrorCode::kUsage, [&] { made(); }).what(),
+              HasSubstr("--controller-path FOLDER"));
 }
 
 TEST_F(ProgramScenarioTest, NamesThatAreNotShippedAreRefusedBeforeAnythingIsRead) {

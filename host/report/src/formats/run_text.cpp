@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 
 #include <tether/base/text_table.h>
+#include <tether/os/shell_word.h>
 #include <tether/report/page.h>
 #include <tether/report/run_text.h>
 #include <tether/report/verdict.h>
@@ -106,7 +107,11 @@ void add_circumstances(Rows& rows, const campaign::TrialResult& result) {
 void add_files(Rows& rows, const campaign::TrialResult& result,
                const std::filesystem::path& folder) {
   const std::filesystem::path record = folder / "record.mcap";
-  if (std::filesystem::exists(record)) rows.emplace_back("record", record.string());
+  if (std::filesystem::exists(record)) {
+    rows.emplace_back("record", record.string());
+    rows.emplace_back(
+        "page", fmt::format("tether report {} --format html", os::shell_word(folder.string())));
+  }
   if (result.outcome == campaign::Outcome::kGoalReached) return;
   // What a program printed often says why.
   for (const campaign::SutResult& sut : result.suts)

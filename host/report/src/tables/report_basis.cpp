@@ -143,7 +143,16 @@ Table basis_table(const campaign::CampaignResults& results) {
         {"Stops of all threads", fmt::format("{}, largest overshoot {:.3f} ms", basis.stops->count,
                                              1e3 * to_seconds(basis.stops->largest_overshoot))});
   for (const std::string& text : basis.conditions) table.rows.push_back({"Condition", text});
-  for (const auto& [name, value] : results.manifest.settings) table.rows.push_back({name, value});
+  std::size_t files = 0;
+  for (const auto& [name, value] : results.manifest.settings) {
+    if (name.starts_with(campaign::kFileSetting))
+      ++files;
+    else if (name != "machine" && !name.starts_with("sut of "))  // above
+      table.rows.push_back({name, value});
+  }
+  if (files > 0)
+    table.rows.push_back(
+        {"Files", fmt::format("{}; their digests are in {}", files, campaign::kCampaignFile)});
   table.notes = results.damaged;
   return table;
 }

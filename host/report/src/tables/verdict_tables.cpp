@@ -22,6 +22,9 @@ Table empty_stages_table() {
   table.headings = {
       single_headings({"Condition", "Stage", "Times", "Median (ms)", "95 % (ms)", "Share"})};
   table.text_columns = 2;
+  table.notes = {
+      "“A to B” is what the program computes between its calls A and B. Of a program as it is, "
+      "“receive” is each wait: for its sensors, its flight controller or a time."};
   return table;
 }
 

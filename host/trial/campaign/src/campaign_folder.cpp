@@ -49,22 +49,27 @@ std::set<std::string> names_in(const fs::path& folder) {
 
 void require_same(const fs::path& folder, const Settings& then, const Settings& now,
                   OpenMode mode) {
-  const auto refuse_setting = [&](const std::string& name, const std::string& difference) {
-    throw Error(
-        ErrorCode::kUsage, {folder.string()},
-        fmt::format("contains trials with other settings: '{}' {}. Results of both must "
-                    "not be mixed, so choose another folder{}.",
-                    name, difference, mode == OpenMode::kResume ? " and omit --resume" : ""))
+  // Of a file, the value is its digest, which tells people nothing.
+  const auto refuse_setting = [&](const std::string& name, const std::string& of_file,
+                                  const std::string& of_other) {
+    const std::string difference =
+        name.starts_with(kFileSetting)
+            ? fmt::format("the file {} {}", name.substr(kFileSetting.size()), of_file)
+            : fmt::format("'{}' {}", name, of_other);
+    throw Error(ErrorCode::kUsage, {folder.string()},
+                fmt::format("contains trials with other settings: {}. Results of both must "
+                            "not be mixed, so choose another folder{}.",
+                            difference, mode == OpenMode::kResume ? " and omit --resume" : ""))
         .about(name);
   };
   for (const auto& [name, value] : now) {
     const auto before = then.find(name);
-    if (before == then.end()) refuse_setting(name, "is new");
+    if (before == then.end()) refuse_setting(name, "was not used then", "is new");
     if (before->second != value)
-      refuse_setting(name, fmt::format("was {} and is {}", before->second, value));
+      refuse_setting(name, "has changed", fmt::format("was {} and is {}", before->second, value));
   }
   for (const auto& [name, value] : then)
-    if (!now.contains(name)) refuse_setting(name, "no longer exists");
+    if (!now.contains(name)) refuse_setting(name, "is not used now", "no longer exists");
 }
 
 // Everything that the campaign plans, as a person would name it.

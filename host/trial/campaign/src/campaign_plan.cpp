@@ -37,7 +37,7 @@ bool is_attached(const std::string& simulator) {
 }
 
 std::string setting_name(const scenario::Campaign& campaign, const std::filesystem::path& file) {
-  return "file " + name_in(campaign, file);
+  return std::string(kFileSetting) + name_in(campaign, file);
 }
 
 }  // namespace

@@ -129,7 +129,7 @@ TEST_F(Folder, RefusesToMixSettings) {
   settings_["tether"] = "0.2.0";
   expect_refused(OpenMode::kResume, "was 0.1.0 and is 0.2.0", "tether");
   settings_ = {{"tether", "0.1.0"}};
-  expect_refused(OpenMode::kResume, "'file room.sdf'", "file room.sdf");
+  expect_refused(OpenMode::kResume, "the file room.sdf is not used now", "file room.sdf");
   settings_ = {{"file room.sdf", "abc"}, {"new", "1"}, {"tether", "0.1.0"}};
   expect_refused(OpenMode::kFresh, "'new'", "new");
   EXPECT_EQ(read_manifest(out_).settings.at("tether"), "0.1.0");

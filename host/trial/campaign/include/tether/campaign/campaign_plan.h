@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <tether/scenario/campaign.h>
@@ -67,6 +68,8 @@ void require_jobs_allowed(const scenario::Campaign& campaign, int jobs);
 /// What must be equal for results to be comparable: name → value, for instance "tether" → "0.1.0",
 /// "file scenarios/face_anchor.toml" → digest of its content.
 using Settings = std::map<std::string, std::string>;
+/// Begins the name of a setting that is a file's digest. The rest is the file.
+inline constexpr std::string_view kFileSetting = "file ";
 
 /// Every file that the campaign's scenarios name, and each existing regular file among the fixed
 /// arguments of a SUT's command (as `sut.py` in ["python3", "sut.py"]). Without the campaign file
