@@ -2,6 +2,7 @@
 
 #include "beside_source.h"
 #include "clocks.h"
+#include "nmea.h"
 #include "real.h"
 
 #include <algorithm>
@@ -115,27 +116,44 @@ bool Agent::receive_until(std::optional<ExecTime> until) {
   std::vector<std::string_view> sensors;
   for (const Camera& camera : cameras_.cameras())
     if (camera.has_room()) sensors.push_back(camera.sensor());
+  if (port_.has_receiver()) sensors.push_back(receiver_);
   const Duration timeout = until ? std::max(Duration(0), *until - now()) : kForEver;
   const auto received =
       Unpaid::in_call([&] { return vehicle_->receive_or_measure(timeout, sensors); });
   if (!received && received.failure().kind != Failure::Kind::kNothingYet) end(received.failure());
   if (received && *received && (*received)->from == link::kAutopilot)
     port_.deliver((*received)->bytes);
-  if (received && !*received)
-    for (Camera& camera : cameras_.cameras()) camera.take_arrived();
+  if (received && !*received) take_measured();
   return received.ok();
 }
 
+void Agent::take_measured() {
+  for (Camera& camera : cameras_.cameras()) camera.take_arrived();
+  if (!port_.has_receiver()) return;
+  const auto fix = Unpaid::in_call(
+      [&] { return vehicle_->read<uav::NavSatSample>(receiver_, client::Read::kIfAvailable); });
+  if (!fix) {
+    if (fix.failure().kind != Failure::Kind::kNothingYet) end(fix.failure());
+    return;
+  }
+  const Duration at_utc = at_start(CLOCK_REALTIME) + (fix->sampled_at - SimTime{});
+  const std::string text = nmea_of(*fix, at_utc);
+  port_.deliver_of_receiver({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+}
+
 void Agent::take_arrived() {
-  with_cameras([this](CameraFiles& cameras) {
+  with_cameras([this](CameraFiles&) {
     while (receive_until(now())) {
     }
-    for (Camera& camera : cameras.cameras()) camera.take_arrived();
+    take_measured();
   });
 }
 
-void Agent::add_cameras() {
+void Agent::add_sensors() {
   for (const uav::SensorDescription& sensor : vehicle_->catalogue().sensors) {
+    if (receiver_.empty() && sensor.rate_hz > 0.0 &&
+        std::holds_alternative<uav::NavSatProperties>(sensor.properties))
+      receiver_ = sensor.name;
     const auto kind = sensor.camera_kind();
     if (!kind || !uav::has_color(*kind) || sensor.rate_hz <= 0.0) continue;
     cameras_.add(sensor, {.take = [this, name = sensor.name] { return take_image(name); },

@@ -71,6 +71,8 @@ class Agent {
   /// The same, from a stream of frames.
   void send_stream(std::span<const std::uint8_t> bytes);
   bool has_controller() const;
+  /// Of satellite navigation, with a rate of its own.
+  bool has_receiver() const { return !receiver_.empty(); }
 
   bool is_camera(int fd) const { return cameras_.is_ours(fd); }
   bool has_camera(unsigned number) { return number < cameras_.cameras().size(); }
@@ -105,14 +107,15 @@ class Agent {
  private:
   Agent(std::unique_ptr<client::Vehicle> vehicle, client::TimeSource& source)
       : vehicle_(std::move(vehicle)), source_(&source), factor_(source.clock().factor) {
-    add_cameras();
+    add_sensors();
   }
   /// Takes the next message, or lets ET reach that instant.
   bool receive_until(std::optional<ExecTime> until);
   void tell_if_idle();
   struct Patience;
   bool lead();
-  void add_cameras();
+  void add_sensors();
+  void take_measured();
   std::optional<uav::CameraSample> take_image(const std::string& sensor);
   void drop(const std::string& sensor, bool keeps_later_ones);
   [[noreturn]] void lead_for_others();
@@ -130,7 +133,8 @@ class Agent {
   double factor_;               // ET per CPU time, or wall time
   bool is_known_to_be_used_ = false;
   Port port_;
-  CameraFiles cameras_;  // with leading_
+  CameraFiles cameras_;     // with leading_
+  std::string receiver_{};  // the sensor; empty: none
   Timers timers_;
   std::mutex stream_mutex_;
   FrameStream stream_;

@@ -1,5 +1,6 @@
 // Devices in place of the C library's files: /dev/video0, … are the cameras of the UAV, and there
-// are no others; usual serial ports lead to its flight controller, if it has one.
+// are no others; usual serial ports lead to its flight controller, if it has one, or to its
+// receiver of satellite navigation.
 
 #include "clocks.h"
 #include "in_place.h"
@@ -48,22 +49,31 @@ int open_camera(unsigned number, int flags) {
   return agent.with_cameras([=](CameraFiles& files) { return files.open(number, flags); });
 }
 
-bool is_to_controller(const char* path) {
-  return is_serial_port(path) && agent() != nullptr && Agent::get()->has_controller();
+/// What the path of a serial port leads to; none: nothing of the UAV.
+std::optional<Port::Line> line_at(const char* path) {
+  if (is_serial_port(path) && agent() != nullptr && Agent::get()->has_controller())
+    return Port::Line::kController;
+  if (!is_receiver_port(path) || agent() == nullptr) return std::nullopt;
+  if (Agent::get()->has_receiver()) return Port::Line::kReceiver;
+  const Inside inside;
+  Agent::tell(std::string("the program looked for ") + path +
+              "; the UAV has no sensor for satellite navigation that measures periodically");
+  return std::nullopt;
 }
 
 /// A descriptor of the device, −1 with errno; none: the path is another file's.
 std::optional<int> open_device(const char* path, int flags) {
   if (const auto number = camera_at(path)) return open_camera(*number, flags);
-  if (!is_to_controller(path)) return std::nullopt;
+  const auto line = line_at(path);
+  if (!line) return std::nullopt;
   const Inside inside;
-  return Agent::get()->port().open_serial(flags);
+  return Agent::get()->port().open_serial(*line, flags);
 }
 
 /// Whether the path is that of a device. `result`: whether that is there.
 bool look_for(const char* path, int& result) {
   result = 0;
-  if (is_to_controller(path)) return true;
+  if (line_at(path)) return true;
   const auto number = camera_at(path);
   if (number && !Agent::get()->has_camera(*number)) result = fail(ENOENT);
   return number.has_value();

@@ -88,12 +88,12 @@ void Port::forget(int socket) {
   if (bound != 0) --count_;
   if (bound != kSerial) return;
   const std::lock_guard lock(lines_mutex_);
-  const int other = lines_.extract(socket).mapped();
-  if (std::ranges::none_of(lines_, [other](const auto& line) { return line.second == other; }))
+  const int other = lines_.extract(socket).mapped().other;
+  if (std::ranges::none_of(lines_, [other](const auto& l) { return l.second.other == other; }))
     TETHER_REAL(close)(other);
 }
 
-int Port::open_serial(int flags) {
+int Port::open_serial(Line to, int flags) {
   const SerialPort port = as_is::open_serial_port(flags);
   if (port.program < 0 || static_cast<std::size_t>(port.program) >= kSockets) {
     const int error = errno;
@@ -103,7 +103,7 @@ int Port::open_serial(int flags) {
     return -1;
   }
   const std::lock_guard lock(lines_mutex_);
-  lines_[port.program] = port.other;
+  lines_[port.program] = {to, port.other};
   bound_[static_cast<std::size_t>(port.program)] = kSerial;
   ++count_;
   return port.program;
@@ -111,6 +111,18 @@ int Port::open_serial(int flags) {
 
 bool Port::is_serial(int fd) const {
   return is_ours(fd) && bound_[static_cast<std::size_t>(fd)].load() == kSerial;
+}
+
+bool Port::is_of_receiver(int fd) const {
+  const std::lock_guard lock(lines_mutex_);
+  const auto line = lines_.find(fd);
+  return line != lines_.end() && line->second.to == Line::kReceiver;
+}
+
+bool Port::has_receiver() const {
+  if (!is_any()) return false;
+  const std::lock_guard lock(lines_mutex_);
+  return std::ranges::any_of(lines_, [](const auto& l) { return l.second.to == Line::kReceiver; });
 }
 
 // It has one queue, so what is delivered to the first one is there for both.
@@ -148,12 +160,16 @@ void Port::deliver(std::span<const std::uint8_t> bytes) {
     (sender_, bytes.data(), bytes.size(), MSG_DONTWAIT, reinterpret_cast<const sockaddr*>(&target),
      sizeof target);
   }
-  // What finds no room is lost, as on a line.
+  write_to_lines(Line::kController, bytes);
+}
+
+// What finds no room is lost, as on a line.
+void Port::write_to_lines(Line to, std::span<const std::uint8_t> bytes) {
   const std::lock_guard lock(lines_mutex_);
   std::set<int> others;
-  for (const auto& [fd, other] : lines_)
-    if (others.insert(other).second)
-      static_cast<void>(TETHER_REAL(write)(other, bytes.data(), bytes.size()));
+  for (const auto& [fd, line] : lines_)
+    if (line.to == to && others.insert(line.other).second)
+      static_cast<void>(TETHER_REAL(write)(line.other, bytes.data(), bytes.size()));
 }
 
 void Port::believe(sockaddr* address, const socklen_t* size) const {

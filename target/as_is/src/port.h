@@ -37,15 +37,24 @@ class Port {
   void forget(int socket);
   /// A descriptor of the same socket, if that is ours.
   void copy(int socket, int copy);
-  /// Opens a serial port to the flight controller, as open(). It is ours, and no socket.
-  int open_serial(int flags);
+  /// What a serial port leads to.
+  enum class Line { kController, kReceiver };  // of satellite navigation
+  /// Opens a serial port, as open(). It is ours, and no socket.
+  int open_serial(Line to, int flags);
   bool is_serial(int fd) const;
+  bool is_of_receiver(int fd) const;
+  /// Whether the program has a serial port of a receiver.
+  bool has_receiver() const;
 
   /// The address that the program believes it has bound; false: it is not ours.
   bool believed(int socket, sockaddr* address, socklen_t* size) const;
 
   /// A message of the flight controller: to all our sockets.
   void deliver(std::span<const std::uint8_t> bytes);
+  /// What a receiver says: to the serial ports that lead to it.
+  void deliver_of_receiver(std::span<const std::uint8_t> bytes) {
+    write_to_lines(Line::kReceiver, bytes);
+  }
   /// If an address is that of the sender of `deliver`: replaces it by the flight controller's.
   void believe(sockaddr* address, const socklen_t* size) const;
   /// Where to connect a socket in place of a flight controller.
@@ -58,8 +67,13 @@ class Port {
   std::atomic<int> count_ = 0;
   int sender_ = -1;
   sockaddr_in own_{};
-  std::mutex lines_mutex_;
-  std::map<int, int> lines_;  // by descriptor of a serial port: its other end
+  struct Serial {
+    Line to;
+    int other;  // its other end
+  };
+  void write_to_lines(Line to, std::span<const std::uint8_t> bytes);
+  mutable std::mutex lines_mutex_;
+  std::map<int, Serial> lines_;  // by descriptor of a serial port
 };
 
 }  // namespace tether::as_is

@@ -16,6 +16,7 @@ namespace {
 
 constexpr std::string_view kPorts[] = {"/dev/ttyACM0", "/dev/ttyUSB0", "/dev/ttyAMA0",
                                        "/dev/ttyS0",   "/dev/ttyTHS1", "/dev/serial0"};
+constexpr std::string_view kReceiverPorts[] = {"/dev/ttyACM1", "/dev/ttyUSB1", "/dev/gps0"};
 constexpr std::uint8_t kVersion1 = 0xFE, kVersion2 = 0xFD;
 constexpr std::uint8_t kSigned = 1;  // a flag of version 2
 
@@ -34,6 +35,10 @@ std::size_t frame_bytes(std::span<const std::uint8_t> bytes) {
 
 bool is_serial_port(const char* path) {
   return path != nullptr && std::ranges::count(kPorts, std::string_view(path)) > 0;
+}
+
+bool is_receiver_port(const char* path) {
+  return path != nullptr && std::ranges::count(kReceiverPorts, std::string_view(path)) > 0;
 }
 
 // Raw at first, so that it does not send back what it receives.

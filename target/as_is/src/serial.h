@@ -9,6 +9,8 @@ namespace tether::as_is {
 
 /// Whether a path is that of a serial port to which companions have a flight controller connected.
 bool is_serial_port(const char* path);
+/// Whether it is that of one to which they have a receiver of satellite navigation connected.
+bool is_receiver_port(const char* path);
 /// Opens such a port as a pseudo-terminal: the program's end, as open(), and the other one. What is
 /// written to the other one can be read at the program's, as far as the kernel has room.
 struct SerialPort {

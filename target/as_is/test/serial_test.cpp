@@ -50,6 +50,8 @@ TEST(AsIsSerial, KnowsTheUsualPorts) {
   EXPECT_TRUE(is_serial_port("/dev/serial0"));
   EXPECT_FALSE(is_serial_port("/dev/tty"));
   EXPECT_FALSE(is_serial_port(nullptr));
+  EXPECT_TRUE(is_receiver_port("/dev/ttyACM1"));
+  EXPECT_FALSE(is_receiver_port("/dev/ttyACM0"));
 }
 
 TEST(AsIsSerial, APortIsATerminalThatCarriesBytesAsTheyAre) {

@@ -19,7 +19,8 @@ class AsIs : public testing::Test {
     const auto file = folder_ / "as_is.toml";
     write_text(file,
                "name = \"as_is\"\nworld = \"yard\"\ntime_limit_s = " + std::to_string(limit_s) +
-                   "\n[[uav]]\nname = \"uav1\"\nmodel = \"hummingbird\"\n"
+                   "\n[[uav]]\nname = \"uav1\"\nmodel = \"" + model_ +
+                   "\"\n"
                    "position_m = [0.0, 0.0, 0.1]\nflight_controller = \"built-in\"\n"
                    "profile = \"paper_streaming\"\n"
                    "[sut]\ncommand = [" +
@@ -49,7 +50,33 @@ class AsIs : public testing::Test {
   TempFolder folder_;
   record::Record record_of_fast_;
   std::string interpreter_ = "python3";
+  std::string model_ = "hummingbird";
 };
+
+// Ten fixes a second, each with the time at which it was measured.
+TEST_F(AsIs, AReceiverOfSatelliteNavigationIsASerialPort) {
+  std::string model = read_text(TETHER_SOURCE_DIR "/data/models/hummingbird/model.sdf");
+  model.insert(model.find("</link>"),
+               "<sensor name=\"gnss\" type=\"navsat\"><update_rate>10</update_rate></sensor>");
+  model_ = folder_ / "own.sdf";
+  write_text(model_, model);
+  const Output output = fly_python(R"(
+import select, time
+port = open("/dev/ttyACM1", "r+b", buffering=0)
+text, begin = b"", time.monotonic()
+port.write(b"\xb5\x62settings")
+while time.monotonic() - begin < 2.05:
+    if select.select([port], [], [], 0.3)[0]:
+        text += port.read(500)
+fixes = [line.split(b",") for line in text.split(b"\r\n") if line.startswith(b"$GNGGA")]
+times = [float(fix[1]) for fix in fixes]
+assert 20 <= len(times) <= 22, times
+assert all(abs(b - a - 0.1) < 2e-3 for a, b in zip(times, times[1:])), times
+assert all(fix[6] == b"1" for fix in fixes)
+)");
+  EXPECT_EQ(output.code, 0) << output.err << said();
+  EXPECT_EQ(audit_code(folder_ / "out"), 0);
+}
 
 /// By Debian's Python, for which there is a package of OpenCV.
 class AsIsCamera : public AsIs {
