@@ -39,9 +39,11 @@ std::string campaign_command(const ConditionVerdict& condition) {
 
 /// To find out whether speed matters at all.
 std::string faster_advice(const ConditionVerdict& lead) {
-  std::string text = lead.pace && lead.pace->keeps_up()
-                         ? "The program reads every image, so the computer may not be the cause. "
-                         : "";
+  std::string text =
+      lead.pace && lead.pace->keeps_up()
+          ? "While it reads, the program keeps up with the camera, so the computer may not be the "
+            "cause. "
+          : "";
   text += "To see whether speed matters, fly on a faster computer";
   const std::string size = size_command(lead, true);
   return text + (size.empty() ? "." : ": " + size);

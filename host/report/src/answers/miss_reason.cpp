@@ -288,6 +288,9 @@ std::string possible_cause(const campaign::TrialResult& flight, const std::optio
     if (warning.consequence == Consequence::kDoubtful)
       return warning.subject + " " + warning.message;
   if (const judge::ClauseVerdict* clause = of_forgotten_task(flight)) return clause->limited_by;
+  for (const judge::ClauseVerdict& clause : flight.clauses)
+    if (!clause.met && !clause.quantity.empty() && clause.quantiles.empty())
+      return fmt::format("“{}” has nothing to judge: {}", clause.name, clause.limited_by);
   if (pace && pace->messages > 0 && pace->messages_arrived == 0)
     return fmt::format("none of {} messages arrives", pace->messages);
   return "";

@@ -60,8 +60,14 @@ MissedLimits missed_in(const campaign::TrialResult& trial) {
     add("“battery not empty”");
   if (has_crash(trial)) add("“no crash”");
   if (trial.end == campaign::kEndTimeLimit) add("the time limit");
-  for (const judge::ClauseVerdict& clause : trial.clauses)
-    if (!clause.met) add(fmt::format("“{}”", clause.name));
+  // What ended the flight is why others could not be judged.
+  const bool has_ended_it = trial.end == campaign::kEndKilled;
+  const auto add_clauses = [&](bool judged) {
+    for (const judge::ClauseVerdict& clause : trial.clauses)
+      if (!clause.met && clause.margin.has_value() == judged) add(fmt::format("“{}”", clause.name));
+  };
+  add_clauses(true);
+  if (!has_ended_it || missed.empty()) add_clauses(false);
   for (const campaign::MetricValue& metric : trial.metrics)
     if (metric.value && !metric.is_met()) add(limited(metric));
   if (!missed.empty()) return missed;
@@ -132,13 +138,15 @@ void count(ConditionVerdict& verdict, const campaign::TrialResult& trial) {
     compare(fmt::format("“{}”", clause.name), margin_of(clause));
   if (!worst) return;
   if (!verdict.closest || worst->second < verdict.closest->second) verdict.closest = worst;
-  // A flight that missed what has no margin, such as a crash, is not near to any limit.
+  // A flight that missed what has no margin, such as a crash, is not near to any limit. Nor is one
+  // that a clause ended there: how far it would have gone beyond is not known.
   const auto is_missed_alone = [](const judge::ClauseVerdict& one) {
     return !one.met && !one.margin;
   };
-  const bool is_by_margins = trial.outcome == campaign::Outcome::kGoalReached ||
-                             (worst->second < 0.0 && !has_crash(trial) &&
-                              std::ranges::none_of(trial.clauses, is_missed_alone));
+  const bool is_by_margins =
+      trial.outcome == campaign::Outcome::kGoalReached ||
+      (worst->second < 0.0 && !has_crash(trial) && trial.end != campaign::kEndKilled &&
+       std::ranges::none_of(trial.clauses, is_missed_alone));
   if (!is_by_margins) return;
   if (!verdict.tightest || std::abs(worst->second) < std::abs(verdict.tightest->second))
     verdict.tightest = worst;
@@ -453,9 +461,10 @@ PaceOrReason pace_or_reason(const campaign::TrialResult& trial) {
   if (trial.pace || is_free_running(trial)) return {trial.pace, ""};
   return {
       std::nullopt,
-      fmt::format("the result of seed {} does not have them, because it is of an earlier version "
-                  "of Tether, or its program reports no stages",
-                  trial.seed)};
+      fmt::format(
+          "the result of seed {} does not have them, because it is of an earlier version "
+          "of Tether, its program reports no stages, or the flight ended before it did anything",
+          trial.seed)};
 }
 
 std::vector<Verdict> verdicts_of(const campaign::CampaignResults& results) {

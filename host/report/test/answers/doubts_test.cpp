@@ -35,6 +35,20 @@ TEST(Verdict, OfABusyMachineHoldsIfItsSpreadCannotChangeIt) {
   }
 }
 
+// How far the flight would have gone beyond it is not known, and what came after was not flown.
+TEST(Verdict, AClauseThatEndsTheFlightIsTheOnlyOneToNameAndNoNearMiss) {
+  campaign::ScenarioResults scenario = flights(0, 1);
+  campaign::TrialResult& trial = scenario.conditions[0].trials[0];
+  trial.metrics.clear();
+  trial.end = campaign::kEndKilled;
+  trial.clauses = {{.uav = "uav1", .name = "late"},
+                   {.uav = "uav1", .name = "fence", .margin = -0.002, .unit = "m", .limit = 0.2}};
+  trial.this_run.doubts = {{campaign::Doubt::Kind::kBusyMachine, "", 0.5}};
+  EXPECT_EQ(ruling_of(scenario), Ruling::kGoalMissed);
+  EXPECT_THAT(answers_of({verdict_of(scenario)})[0].rest,
+              HasSubstr("the flight does not meet “fence”. "));
+}
+
 // The closest limit has 20 % left.
 TEST(Verdict, OfAProgramThatWaitedALittleHoldsIfThatCannotChangeIt) {
   campaign::ScenarioResults scenario = flights(1, 0);

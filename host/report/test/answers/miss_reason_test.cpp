@@ -279,6 +279,13 @@ TEST_F(MissReasons, ArePossibleOfWhatAProgramMayNotNeed) {
   trial.clauses = {{.uav = "uav1", .name = "near", .limited_by = "the task 'look' did not run"}};
   EXPECT_THAT(verdict_text({verdict()}, Markup::kPlain),
               HasSubstr("A possible reason: the task 'look' did not run."));
+  trial.clauses = {{.uav = "uav1",
+                    .name = "reaction",
+                    .from = SimTime{},
+                    .limited_by = "there is no such command",
+                    .quantity = "reaction_time"}};
+  EXPECT_THAT(verdict_text({verdict()}, Markup::kPlain),
+              HasSubstr("A possible reason: “reaction” has nothing to judge: there is no such"));
   trial.metrics = metrics;
   add("host", 5, 5, measured(0.02));
   EXPECT_NE(ruling(0), Ruling::kOtherReason);
