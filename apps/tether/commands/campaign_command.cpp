@@ -74,13 +74,14 @@ scenario::Campaign read(const CampaignOptions& options, const scenario::ShippedF
         scenario::load_scenario(file), options.conditions,
         static_cast<std::size_t>(options.trials.value_or(kTrialsOfScenario)));
   require_kind(file, FileKind::kCampaign);
+  scenario::Campaign campaign = scenario::load_campaign(file);
   for (const auto& [option, is_given] :
        {std::pair{"--condition", !options.conditions.empty()}, {"--trials", !!options.trials}})
     if (is_given)
       refuse_option(option, fmt::format("is for a scenario, and {} is a campaign, whose file says "
                                         "what is flown.",
                                         file.string()));
-  return scenario::load_campaign(file);
+  return campaign;
 }
 
 /// The same, with the simulator of the options in all conditions if one is given.
@@ -190,21 +191,6 @@ campaign::CampaignOutcome fly(const Flying& f, const std::optional<shards::Engin
       progress);
 }
 
-/// "to continue, type: tether campaign face_anchor --out out --resume"
-std::string how_to_continue(const CampaignOptions& options, const std::filesystem::path& out) {
-  const std::string part = !options.shard.empty() ? "--shard " + options.shard
-                           : options.engine.engine.empty()
-                               ? "--resume"
-                               : "--resume --engine " + options.engine.engine;
-  std::string scenario;
-  for (const std::string& name : options.conditions)
-    scenario += " --condition " + os::shell_word(name);
-  if (options.trials) scenario += fmt::format(" --trials {}", *options.trials);
-  return fmt::format("to continue, type: tether campaign {}{} --out {} {}",
-                     os::shell_word(options.campaign.string()), scenario,
-                     os::shell_word(out.string()), part);
-}
-
 /// Whether a trial failed, or says nothing because of a doubt: in this part or in earlier ones.
 bool has_failures(const campaign::CampaignResults& results) {
   for (const campaign::ScenarioResults& scenario : results.scenarios)
@@ -244,7 +230,7 @@ int run_trials(const CampaignOptions& options, const std::stop_token& stop) {
         return fly(flying, engine, servers, progress);
       });
     } catch (const Error&) {
-      complain("the trials that have ended are kept; " + how_to_continue(options, out));
+      complain("the trials that have ended are kept; " + how_to_continue());
       throw;
     }
   }();
@@ -252,7 +238,7 @@ int run_trials(const CampaignOptions& options, const std::stop_token& stop) {
   if (!options.junit.empty())
     os::write_file_atomically(options.junit, report::to_junit(results, out));
   if (outcome.interrupted) {
-    say("tether: interrupted; {}\n", how_to_continue(options, out));
+    say("tether: interrupted; {}\n", how_to_continue());
     return exit_code(ErrorCode::kSetup);
   }
   if (!options.shard.empty())
@@ -283,7 +269,7 @@ Options campaign_rows(CampaignOptions& o) {
         {"--condition NAME",
          "Of a scenario: fly this condition; can be repeated [all of its conditions]",
          &o.conditions,
-         {.is_one_each = true}},
+         {.check = named().check, .is_one_each = true}},
         {"--trials",
          fmt::format("Of a scenario: flights for each condition, with the seeds 1, 2, … [{}]",
                      kTrialsOfScenario),

@@ -202,18 +202,15 @@ void SizeTrials::show(const campaign::CampaignProgress& progress) {
 
 int SizeTrials::say_why(sizing::SearchEnd end) const {
   for (const std::string& line : not_flown_) complain("tether: " + line);
-  const std::string again = fmt::format(
-      "tether size {}{} --out {} --resume, with the options of this call",
-      os::shell_word(options_.scenario.string()), options_.axis == "uavs" ? " --axis uavs" : "",
-      os::shell_word(folder_.path().string()));
+  const std::string again = how_to_continue();
   if (end == sizing::SearchEnd::kUndecidable)
     say("tether: no flight shows whether the computer is fast enough: all {} reached the goal of "
         "the program, but {}. Correct that, or remove the limit.\n",
         flown_, why_without_value_);
   else if (end == sizing::SearchEnd::kInterrupted)
-    say("tether: interrupted after {}; to continue, type: {}\n", counted(flown_, "flight"), again);
+    say("tether: interrupted after {}; {}\n", counted(flown_, "flight"), again);
   else
-    say("tether: {} failed without a result. Fix the cause; to continue, type: {}\n",
+    say("tether: {} failed without a result. Fix the cause; {}\n",
         counted(not_flown_.size(), "flight"), again);
   return exit_code(ErrorCode::kSetup);
 }

@@ -1,5 +1,7 @@
 #include "options/common_options.h"
 
+#include <tether/os/program.h>
+
 namespace tether::app {
 
 Options reading_options(ReadingOptions& reading) {
@@ -27,6 +29,21 @@ Options engine_options(EngineOptions& options) {
            &options.settings}};
 }
 
+Allowed named() {
+  return checked([](const std::string& name) { return name.empty() ? "must not be empty" : ""; });
+}
+
+std::string how_to_continue() {
+  std::string text = "to continue, type: tether";
+  bool continues = false;
+  for (const std::string& word : os::own_arguments()) {
+    if (word == "--force") continue;
+    continues |= word == "--resume" || word == "--shard";
+    text += " " + os::shell_word(word);
+  }
+  return text + (continues ? "" : " --resume");
+}
+
 Option scenario_argument(std::filesystem::path& scenario) {
   return {"scenario", "Name of a shipped scenario, or a file (TOML)", &scenario, required()};
 }
@@ -36,7 +53,7 @@ Option record_argument(std::filesystem::path& record) {
 }
 
 Option condition_option(std::string& condition) {
-  return {"--condition NAME", "Condition of the scenario [its first one]", &condition};
+  return {"--condition NAME", "Condition of the scenario [its first one]", &condition, named()};
 }
 
 Option simulator_option(std::string& simulator) {

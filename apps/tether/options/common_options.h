@@ -25,6 +25,11 @@ struct EngineOptions {
 };
 Options engine_options(EngineOptions& options);
 
+/// What a name may be: anything but nothing, as of a variable of a shell that is not set.
+Allowed named();
+/// "to continue, type: tether campaign face_anchor --out out --resume": this call, continued.
+std::string how_to_continue();
+
 Option scenario_argument(std::filesystem::path& scenario);
 Option record_argument(std::filesystem::path& record);
 Option condition_option(std::string& condition);

@@ -82,6 +82,14 @@ std::filesystem::path own_file() {
   return std::filesystem::read_symlink("/proc/self/exe");
 }
 
+std::vector<std::string> own_arguments() {
+  std::ifstream line("/proc/self/cmdline", std::ios::binary);
+  std::vector<std::string> words;
+  for (std::string word; std::getline(line, word, '\0');) words.push_back(word);
+  if (!words.empty()) words.erase(words.begin());
+  return words;
+}
+
 namespace {
 
 std::filesystem::path find_file(const std::string& name) {

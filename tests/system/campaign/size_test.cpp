@@ -41,7 +41,7 @@ TEST_F(Size, FindsTheSlowestSufficientComputerAlsoAfterCtrlC) {
   const Output interrupted = process.wait(15s);
   EXPECT_EQ(interrupted.code, 3);
   EXPECT_THAT(interrupted.err, HasSubstr("--resume"));
-  EXPECT_THAT(interrupted.out, HasSubstr("because the search was interrupted"));
+  EXPECT_THAT(interrupted.out, StartsWith("Interrupted, so far: "));
   EXPECT_EQ(answer()["interrupted"], true);
 
   const Output resumed = run(with(size(options), {"--resume"}), kLongest);

@@ -189,8 +189,10 @@ std::string doubts_text(const ConditionVerdict& condition) {
                                       is_within_spread(condition, doubt)))
       text += " " + capital(doubt_text(doubt, condition)) + ".";
   if (condition.failed > 0 && condition.flown > 0)
-    text += fmt::format(" {} failed and {} not counted.", counted(condition.failed, "flight"),
-                        condition.failed == 1 ? "is" : "are");
+    text += fmt::format(
+        " {} failed and {} not counted{}.", counted(condition.failed, "flight"),
+        condition.failed == 1 ? "is" : "are",
+        condition.unsound > 0 || condition.reason.empty() ? "" : ": " + condition.reason);
   const std::size_t missing =
       condition.planned - std::min(condition.planned, condition.flown + condition.failed);
   if (missing > 0 && condition.flown + condition.failed > 0)

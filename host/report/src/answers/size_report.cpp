@@ -242,6 +242,7 @@ std::vector<Answer> size_answers(const SizeReport& report) {
   std::vector<Answer> answers;
   if (const auto gap = success_gap(report)) answers.push_back(gap_answer(*gap, report));
   answers.push_back(main_answer(report));
+  if (report.is_interrupted) answers.back().lead.insert(0, kSoFar);
   for (const Board& board : report.boards) answers.push_back(board_answer(board, report));
   if (report.unsynchronised) answers.push_back(flattery(report));
   if (answer.basis == sizing::Basis::kLevels)
@@ -309,6 +310,7 @@ std::vector<std::string> size_advice(const SizeReport& report) {
     advice.push_back(fmt::format(
         "To find the limit, search beyond {} ×: `--between {:.3g},{:.3g}`.",
         digits(report.question.most), report.question.most, 10.0 * report.question.most));
+  if (is_probably_not_for_speed(report)) return advice;
   if (report.boards.empty())
     advice.emplace_back("To see the headroom of a board, name it: `--target FILE`.");
   if (!report.unsynchronised)

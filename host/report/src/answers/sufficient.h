@@ -8,6 +8,9 @@
 /// What would be fast enough, as far as the campaign's own flights show it. Pure functions.
 namespace tether::report {
 
+/// Before the answer of `tether size` that was interrupted.
+inline constexpr const char* kSoFar = "Interrupted, so far: ";
+
 /// Whether it is fast enough, at least so far.
 bool is_sufficient(Ruling ruling);
 

@@ -125,6 +125,7 @@ std::vector<Answer> uavs_answers(const UavsReport& report) {
        fmt::format(" (“{}” under “{}”, {} of the flights wanted): {}; {}; {}.", report.board,
                    report.condition, in_percent(report.question.success), evidence_of(report),
                    in_percent(report.question.confidence), counted(flights_of(report), "flight"))}};
+  if (report.is_interrupted) answers.back().lead.insert(0, kSoFar);
   if (const auto& pace = report.pace.pace;
       pace && !pace->shared_board.empty() && !pace->camera.empty())
     answers.push_back(

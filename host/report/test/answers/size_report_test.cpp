@@ -74,6 +74,9 @@ TEST(SizeReport, SaysWhatLimitsTheAnswer) {
   ASSERT_THAT(sentences, SizeIs(5));
   EXPECT_THAT(sentences[2], HasSubstr("by neighbourhoods of slowdowns"));
   EXPECT_THAT(sentences[3], HasSubstr("wider than a factor of 1.3"));
+  report.is_interrupted = true;
+  EXPECT_THAT(size_sentences(report)[0], testing::StartsWith("Interrupted, so far: Sufficient"));
+  EXPECT_THAT(size_sentences(report)[3], HasSubstr("because the search was interrupted"));
 }
 
 TEST(SizeReport, ComparesWithTheUnsynchronisedCondition) {

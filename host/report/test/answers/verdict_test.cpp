@@ -290,7 +290,7 @@ TEST(Verdict, SaysWhatItsWordsRestOn) {
   part.conditions[0].planned = 10;
   campaign::invalidate(part.conditions[0].trials[0], "no port");
   EXPECT_THAT(text(part),
-              HasSubstr("1 flight failed and is not counted. 2 flights have no result."));
+              HasSubstr("1 flight failed and is not counted: no port. 2 flights have no result."));
   campaign::ScenarioResults stopped = flights(0, 0);
   stopped.conditions[0].planned = 10;
   EXPECT_THAT(text(stopped),

@@ -98,7 +98,7 @@ void require_nothing_dropped(const fs::path& folder, const CampaignManifest& the
   dropped.resize(dropped.size() - more);
   refuse_folder(
       folder,
-      fmt::format("contains trials of {}{}, which this campaign no longer has. Put that "
+      fmt::format("was begun for {}{}, which this campaign no longer has. Put that "
                   "back, or choose another folder.",
                   fmt::join(dropped, ", "), more > 0 ? fmt::format(" and {} more", more) : ""));
 }

@@ -152,7 +152,7 @@ std::string Sizing::so_far() const {
   const Threshold& threshold = latest_.threshold;
   const bool is_bounded = threshold.low > 0.0 || std::isfinite(threshold.high);
   return threshold.estimate > 0.0 && is_bounded
-             ? fmt::format("so far about {:.2g} times slower{}", threshold.estimate,
+             ? fmt::format("so far about {:.2g} × the computing time{}", threshold.estimate,
                            basis_ == Basis::kLevels ? ", by neighbourhoods: no curve fits" : "")
              : "no limit is known yet";
 }

@@ -2,11 +2,14 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace tether::os {
 
 /// The file of this program.
 std::filesystem::path own_file();
+/// What follows the program's name on the command line by which this process was started.
+std::vector<std::string> own_arguments();
 /// The file that a command starts: in the folder of this program, else in PATH. A name with '/' is
 /// a path.
 /// @throws Error(kSetup), about the name, if there is no such program; about the file, if it is a

@@ -173,8 +173,12 @@ Campaign campaign_of(Scenario scenario, const std::vector<std::string>& conditio
                     .seeds = consecutive(1, static_cast<std::int64_t>(trials)),
                     .scenarios = {}};
   CampaignScenario entry{.scenario = std::move(scenario), .conditions = {}, .paper_table = {}};
-  for (const std::string& name : conditions)
+  for (const std::string& name : conditions) {
     entry.conditions.push_back(pick_condition(entry.scenario, name).name);
+    if (std::ranges::count(conditions, name) > 1)
+      throw Error(ErrorCode::kUsage, fmt::format("condition \"{}\" is given twice.", name))
+          .about(name);
+  }
   if (conditions.empty())
     for (const Condition& condition : entry.scenario.conditions)
       entry.conditions.push_back(condition.name);

@@ -56,6 +56,7 @@ TEST_F(LoadCampaign, AScenarioAloneIsACampaignOfItsConditions) {
   EXPECT_THAT(campaign_of(scenario, {"scripted"}, 1).scenarios[0].conditions,
               ElementsAre("scripted"));
   thrown_error(ErrorCode::kUsage, [&] { campaign_of(scenario, {"fast"}, 1); });
+  thrown_error(ErrorCode::kUsage, [&] { campaign_of(scenario, {"host", "host"}, 1); });
 }
 
 TEST_F(LoadCampaign, AppliesItsProfileOnTopOfTheScenarios) {

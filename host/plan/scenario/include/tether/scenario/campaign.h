@@ -38,7 +38,7 @@ Campaign load_campaign(const std::filesystem::path& file);
 
 /// A campaign of one scenario, with the seeds 1 to `trials`.
 /// @param conditions names; empty: all of the scenario
-/// @throws Error(kUsage), as pick_condition, if it has no such condition.
+/// @throws Error(kUsage), as pick_condition, if it has no such condition, or if one is given twice.
 Campaign campaign_of(Scenario scenario, const std::vector<std::string>& conditions,
                      std::size_t trials);
 
