@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
 
 #include <tether/base/text_table.h>
 #include <tether/campaign/copies.h>
@@ -46,6 +47,22 @@ TrialResult result_of(const scenario::Scenario& scenario, const scenario::Condit
   return result;
 }
 
+/// The last thing that the flight controller of a UAV refused or warned of; empty: nothing. Long
+/// texts are sent in pieces.
+std::string refusal_of(const record::Record& record, const std::string& uav) {
+  constexpr int kWarning = 4;  // MAV_SEVERITY_WARNING; less is worse (mavlink.io, "common")
+  std::string refusal;
+  for (const auto& logged : record.autopilot) {
+    const record::AutopilotMessage& m = logged.message;
+    if (m.uav != uav || m.to_controller || m.name != "STATUSTEXT") continue;
+    const auto fields = nlohmann::json::parse(m.fields, nullptr, false);
+    if (!fields.is_object() || fields.value("severity", kWarning + 1) > kWarning) continue;
+    if (fields.value("chunk_seq", 0) == 0) refusal.clear();
+    refusal += fields.value("text", "");
+  }
+  return refusal;
+}
+
 /// A program with a flight controller: whether it did anything and, if it says that it has flown,
 /// whether it can have done so.
 /// Doubts go to `warnings`.
@@ -68,11 +85,15 @@ void check_companion(const record::Record& record, SutResult& sut, std::vector<W
   const bool has_sent = std::ranges::any_of(record.autopilot, is_sent);
   if (!has_sent && std::ranges::none_of(record.interactions, is_call)) {
     doubt("has a program that did nothing with it: no sensor was read, and nothing sent");
-    if (sut.reached_goal) sut.outcome = "it did nothing with its UAV";
+    if (sut.reached_goal) sut.outcome += ", but it did nothing with its UAV";
     sut.reached_goal = false;
     return;
   }
-  if (!sut.reached_goal) return;
+  if (!sut.reached_goal)
+    if (const std::string said = refusal_of(record, sut.uav); !said.empty())
+      sut.outcome +=
+          fmt::format("{}the flight controller said: {}", sut.outcome.empty() ? "" : "; ", said);
+  if (!sut.reached_goal && sut.finished) return;
   const record::GroundTruth *first = nullptr, *last = nullptr;
   bool has_moved = false, has_turned = false;
   for (const auto& logged : record.ground_truth) {
@@ -90,7 +111,10 @@ void check_companion(const record::Record& record, SutResult& sut, std::vector<W
   if (!has_sent) return doubt("has a flight controller to which its program sent no message");
   const bool began_in_air = first != nullptr && first->clearance_m && *first->clearance_m > kAway_m;
   if (!has_moved && !(began_in_air && has_turned))
-    doubt("never left its start, although its program says that it reached its goal");
+    doubt(sut.reached_goal
+              ? "never left its start, although its program says that it reached its goal"
+              : "never left its start");
+  if (!sut.reached_goal) return;
   if (!began_in_air && last != nullptr && last->clearance_m && *last->clearance_m > kAway_m)
     doubt(
         fmt::format("is in the air ({:.3g} m from anything) when its program ends: what follows "

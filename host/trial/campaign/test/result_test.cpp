@@ -310,6 +310,18 @@ TEST_F(MakeResult, ACompanionHasFlownOnlyIfItHasSentSomething) {
   EXPECT_EQ(result.outcome, Outcome::kGoalReached);
   ASSERT_EQ(result.warnings.size(), 1u);
   EXPECT_THAT(to_line(result.warnings[0]), HasSubstr("never left its start"));
+  EXPECT_EQ(make(record, {}).warnings.size(), 1u) << "nor did it by the end of the time";
+  for (const char* fields : {R"({"severity": 6, "text": "Welcome"})",
+                             R"({"severity": 2, "text": "Arming denied: ", "chunk_seq": 0})",
+                             R"({"severity": 2, "text": "no fix", "chunk_seq": 1})"}) {
+    record::AutopilotMessage& said = record.autopilot.emplace_back().message;
+    said.uav = "uav1";
+    said.name = "STATUSTEXT";
+    said.fields = fields;
+  }
+  EXPECT_THAT(make(record, {{"uav1", false, "it gave up", "{}"}}).reason,
+              HasSubstr("it gave up; the flight controller said: Arming denied: no fix"));
+  EXPECT_THAT(make(record, kReached).reason, testing::Not(HasSubstr("Arming")));
   record.ground_truth.push_back(record.ground_truth.back());
   record.ground_truth.back().message.p_WB_m[2] = 2.0;
   record.ground_truth.back().message.clearance_m = 1.5;
