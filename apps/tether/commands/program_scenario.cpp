@@ -76,13 +76,16 @@ bool is_interpreter(const std::string& program) {
   return std::ranges::count(kInterpreters, kind) > 0;
 }
 
-/// Of the program, or of the script that an interpreter runs.
+/// The index of the script that an interpreter runs; 0: the program itself.
+std::size_t script_of(const std::vector<std::string>& command) {
+  if (!is_interpreter(command.front())) return 0;
+  const auto script = std::find_if(command.begin() + 1, command.end(), is_file);
+  return script == command.end() ? 0 : static_cast<std::size_t>(script - command.begin());
+}
+
 std::string script_name(const std::vector<std::string>& command) {
   constexpr std::size_t kMost = 64;
-  const auto script = is_interpreter(command.front())
-                          ? std::find_if(command.begin() + 1, command.end(), is_file)
-                          : command.end();
-  std::string name = fs::path(script == command.end() ? command.front() : *script).stem();
+  std::string name = fs::path(command[script_of(command)]).stem();
   for (char& c : name)
     if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-' && c != '.') c = '_';
   if (name.empty() || name.front() == '.') name.insert(0, "program");
@@ -118,6 +121,9 @@ Values values_of(const ProgramOptions& options, const std::string& profile,
   std::vector<std::string> command = options.command;
   if (command.front().find('/') != std::string::npos)
     command.front() = fs::absolute(command.front()).lexically_normal();
+  // So that the scenario can be flown from any folder.
+  if (const std::size_t script = script_of(command); script > 0)
+    command[script] = fs::absolute(command[script]).lexically_normal();
   const std::string controller =
       options.flight_controller.value_or(options.uses_library ? "none" : "built-in");
   const auto external =

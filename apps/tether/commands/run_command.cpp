@@ -232,7 +232,7 @@ Command run_command() {
   tether run face_anchor --simulator gazebo
   tether run face_anchor --images --out out/one
   tether run -- ./my_program --its options
-  tether run --world room --cpu-factor 8 -- python3 my_program.py)",
+  tether run --world room --position=-1,1,0.1 --cpu-factor 8 -- python3 my_program.py)",
                       run_one);
 }
 
