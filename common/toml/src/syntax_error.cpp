@@ -30,6 +30,14 @@ const std::vector<Mistake>& mistakes() {
        "the string is not closed. Add the missing quote at its end"},
       {std::regex("determine value type"), std::regex("[^=]*=\\s*(?:\xe2\x80[\x98-\x9f])[^]*"),
        "the quotes are typographic ones. Use straight quotes: \"…\""},
+      // Twice.
+      {std::regex("existing array '.*as table"), std::regex("\\s*\\[\\s*([^\\[\\]]+)\\][^]*"),
+       "[$1] is also a list of tables. Write [[$1]]"},
+      {std::regex("table header: cannot redefine"), std::regex("\\s*\\[\\s*([^\\[\\]]+)\\][^]*"),
+       "there are two tables [$1]. Put the keys into one; if it may be there several times, write "
+       "[[$1]] each time"},
+      {std::regex("cannot redefine"), std::regex("\\s*([^=\\s]+)\\s*=[^]*"),
+       "the key '$1' is there twice. Remove one of them"},
       // Booleans and words.
       {std::regex("boolean|determine value type"),
        std::regex("[^=]*=\\s*(yes|no|on|off|true|false)\\s*(#[^]*)?", std::regex::icase),
@@ -54,13 +62,6 @@ const std::vector<Mistake>& mistakes() {
                   "\\s*(#[^]*)?"),
        "'$1' is followed by '$2'. Write the number alone; its unit is that of the key's name"},
       // Keys and headers.
-      {std::regex("existing array '.*as table"), std::regex("\\s*\\[\\s*([^\\[\\]]+)\\][^]*"),
-       "[$1] is also a list of tables. Write [[$1]]"},
-      {std::regex("table header: cannot redefine"), std::regex("\\s*\\[\\s*([^\\[\\]]+)\\][^]*"),
-       "there are two tables [$1]. Put the keys into one; if it may be there several times, write "
-       "[[$1]] each time"},
-      {std::regex("cannot redefine"), std::regex("\\s*([^=\\s]+)\\s*=[^]*"),
-       "the key '$1' is there twice. Remove one of them"},
       {std::regex("table header"), std::regex("\\s*(\\[[^]*)"),
        "the header '$1' is not complete. Write [name] or [[name]]"},
       {any, std::regex("\\s*//[^]*"), "a comment must begin with '#'"},

@@ -42,6 +42,7 @@ TEST(SyntaxError, SaysWhatToWriteAndWhere) {
            Case{"a: 5", 1, "Write a = 5"},
            Case{"a b = 5", 1, "no '=' after the key"},
            Case{"a = 1\na = 2", 2, "the key 'a' is there twice"},
+           Case{"a = true\na = false", 2, "the key 'a' is there twice"},
            Case{"[u]\nx = 1\n[u]\n", 3, "write [[u]] each time"},
            Case{"[[u]]\nx = 1\n[u]\n", 3, "Write [[u]]"},
            Case{"[[u]\n", 1, "the header '[[u]' is not complete"},
