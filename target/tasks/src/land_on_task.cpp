@@ -14,6 +14,7 @@ namespace {
 constexpr double kIntegralShare = 0.4;
 /// It sinks while it is no farther beside the anchor than this, and this share of its height.
 constexpr double kAlways_m = 0.15, kShareOfHeight = 0.2;
+constexpr double kLeastDown = 0.05;  // of a ray's length
 /// A rangefinder that is nearer to the ground than it can measure reads −inf.
 constexpr double kStanding_m = 0.045;
 /// Of the speed of the descent, at the end.
@@ -63,7 +64,8 @@ Result<LandOnTask::View> LandOnTask::look_down(TaskContext& context) {
   const uav::Quat q_WB = attitude(**imu, *reading);
   const uav::Quat level = uav::from_axis_angle({0, 0, 1}, -uav::yaw_rad(q_WB)) * q_WB;
   const uav::Vec3 ray_H = rotate(level, ray_B);
-  if (ray_H.z >= 0.0) return view;
+  // Along the ground, or without a height, where the anchor is cannot be told.
+  if (ray_H.z > -kLeastDown || !std::isfinite(view.height_m)) return view;
   const double scale = std::max(view.height_m, 0.0) / -ray_H.z;
   view.anchor_H_m = uav::Vec3{scale * ray_H.x, scale * ray_H.y, 0.0} +
                     uav::Vec3{camera.X_BS.p.x, camera.X_BS.p.y, 0.0};
