@@ -53,7 +53,11 @@ MaybeFault clock_fault(ExecTime stamp, const Standing& sut, WallTime now) {
           "timestamp ET {:.6f} s, which is {:.6f} s ahead of the host clock (resumed at ET {:.6f} "
           "s{})",
           to_seconds(stamp), to_seconds(excess), to_seconds(sut.plausibility->went_on_at()),
-          sut.clock_cores > 0 ? fmt::format("; CPU time of {} cores", sut.clock_cores) : "")};
+          sut.clock_cores > 0
+              ? fmt::format(
+                    "; CPU time of {} cores; if several threads compute, let one do so at a time",
+                    sut.clock_cores)
+              : "")};
 }
 
 MaybeFault rate_fault(const Standing& sut) {

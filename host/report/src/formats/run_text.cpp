@@ -7,7 +7,7 @@
 #include <fmt/ranges.h>
 
 #include <tether/base/text_table.h>
-#include <tether/os/shell_word.h>
+#include <tether/os/program.h>
 #include <tether/report/page.h>
 #include <tether/report/run_text.h>
 #include <tether/report/verdict.h>

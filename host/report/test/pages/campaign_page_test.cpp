@@ -167,7 +167,7 @@ TEST_F(CampaignPage, ListsFailuresAndNotesOnTop) {
   noted.this_run.notes = {"process <7> was stopped"};
   write(noted);
   expect_in_order(page(),
-                  {"1 flight failed and is not counted.", "<h2>Problems</h2>",
+                  {"1 flight failed and is not counted: ", "<h2>Problems</h2>",
                    "turn, target, seed 2: failed, excluded from all means: no &lt;free&gt; "
                    "port",
                    "turn, target, seed 3: process &lt;7&gt; was stopped", "What was compared",
