@@ -170,7 +170,7 @@ std::string doubt_about(std::vector<fs::path> files, const std::string& conditio
   }
   const auto* const busy = verdict.doubt(campaign::Doubt::Kind::kBusyMachine);
   if (busy == nullptr) return "";
-  return fmt::format("The machine was busy or uneven: its times can be off by {:.0f} % or more.",
+  return fmt::format("The machine was busy or uneven: its times may be off by about {:.0f} %.",
                      100.0 * busy->largest.amount);
 }
 

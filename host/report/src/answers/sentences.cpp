@@ -127,7 +127,7 @@ constexpr std::array kDoubts = {
     "no computer changes it",
     "the program of {subject} waited {percent:.1f} % of its time on something that Tether does not "
     "see",
-    "the machine{subject} was busy or uneven: its times can be off by {percent:.0f} % or more",
+    "the machine{subject} was busy or uneven: its times may be off by about {percent:.0f} %",
 };
 
 std::string doubt_text(const FlightsInDoubt& doubt, const ConditionVerdict& condition) {

@@ -26,8 +26,7 @@ TEST(Verdict, OfABusyMachineHoldsIfItsSpreadCannotChangeIt) {
     doubts = {{campaign::Doubt::Kind::kBusyMachine, "", 0.15}};
     EXPECT_EQ(ruling_of(scenario), before);
     EXPECT_THAT(answers_of({verdict_of(scenario)})[0].rest,
-                HasSubstr(" The machine was busy or uneven: its times can be off by 15 % or "
-                          "more."));
+                HasSubstr(" The machine was busy or uneven: its times may be off by about 15 %."));
     doubts[0].amount = 0.3;
     EXPECT_EQ(ruling_of(scenario), Ruling::kUndecided);
     EXPECT_THAT(answers_of({verdict_of(scenario)})[0].rest, HasSubstr("within the spread"));
