@@ -34,7 +34,8 @@ class Size : public testing::Test {
 // With a scripted clock, the limit is reached up to about 2 x slower.
 TEST_F(Size, FindsTheSlowestSufficientComputerAlsoAfterCtrlC) {
   write_hover_scenario(folder_.path(), "good", {kScripted, limit("3.5")});
-  const std::vector<std::string> options = {"--between", "1,20", "--junit", folder_ / "size.xml"};
+  const std::vector<std::string> options = {"--between", "1,20",    "--interval",
+                                            "1.06",      "--junit", folder_ / "size.xml"};
   Process process(size(options));
   ASSERT_TRUE(process.wait_for_err("seed 12:", kLongest)) << process.err();
   process.signal(SIGINT);
@@ -64,7 +65,7 @@ TEST_F(Size, FindsTheSlowestSufficientComputerAlsoAfterCtrlC) {
   for (const char* file : {"out/report.html", "out/size.svg", "size.xml"})
     EXPECT_TRUE(std::filesystem::is_regular_file(folder_ / file)) << file;
 
-  ASSERT_EQ(run(size({"--between", "1,20"}, "whole"), kLongest).code, 0);
+  ASSERT_EQ(run(size({"--between", "1,20", "--interval", "1.06"}, "whole"), kLongest).code, 0);
   EXPECT_EQ(answer("whole")["flights"], found["flights"]) << "the interruption changed the flights";
 }
 
