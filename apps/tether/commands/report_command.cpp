@@ -49,15 +49,19 @@ bool is_run(const std::filesystem::path& folder) {
   throw Error(ErrorCode::kBadFile, {path.string()}, why).about(path.string());
 }
 
+bool has_results(const std::filesystem::path& folder) {
+  std::error_code ignored;
+  return std::filesystem::exists(folder / campaign::kCampaignFile, ignored) ||
+         std::filesystem::exists(folder / campaign::kResultFile, ignored);
+}
+
 /// " Give one of those in it: out/one, out/two."; empty: there are none.
 std::string inside(const std::filesystem::path& folder) {
   constexpr std::size_t kMost = 4;
   std::vector<std::string> found;
   std::error_code ignored;
   for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))
-    if (std::filesystem::exists(entry.path() / campaign::kCampaignFile, ignored) ||
-        std::filesystem::exists(entry.path() / campaign::kResultFile, ignored))
-      found.push_back(entry.path().string());
+    if (has_results(entry.path())) found.push_back(entry.path().string());
   if (found.empty()) return "";
   std::ranges::sort(found);
   const bool has_more = found.size() > kMost;
@@ -78,9 +82,7 @@ void require_result(const std::filesystem::path& folder) {
   }
   if (access(folder.c_str(), R_OK | X_OK) != 0)
     refuse(folder, fmt::format("cannot be read: {}", std::strerror(errno)));
-  if (std::filesystem::exists(folder / campaign::kCampaignFile) ||
-      std::filesystem::exists(folder / campaign::kResultFile))
-    return;
+  if (has_results(folder)) return;
   const std::filesystem::path record = folder / runner::kRecordFile;
   if (!std::filesystem::exists(record))
     refuse(folder, fmt::format("is neither a run nor a campaign: it has no {} and no {}.{}",

@@ -144,8 +144,7 @@ class SlowdownAxis final : public SizeAxis {
     report_.settings = settings;
     report_.not_flown = not_flown;
     report_.is_interrupted = is_interrupted;
-    sized_.front().sized.answer =
-        is_interrupted ? sized_.front().sizing.answer(true) : sized_.front().sizing.latest();
+    sized_.front().sized.answer = sized_.front().sizing.latest();
     if (sized_.size() > 1) sized_.back().sized.answer = sized_.back().sizing.answer(true);
     for (auto& [sizing, sized, flown] : sized_)
       sized.curve = report::curve_points(sizing.curve(), report_.question);

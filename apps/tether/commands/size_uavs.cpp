@@ -103,7 +103,6 @@ class UavsAxis final : public SizeAxis {
     report_.settings = settings;
     report_.not_flown = not_flown;
     report_.is_interrupted = is_interrupted;
-    search_.next_levels(0);
     report_.answer = search_.answer();
     report_.pace = report::pace_at_limit(report_);
     return report::size_answer(report_);

@@ -30,7 +30,10 @@ SearchEnd search(Axis& axis, std::uint64_t most, std::size_t at_once,
       batch.push_back({level, next_seed++});
     if (batch.empty())
       return flown > 0 && without_value == flown ? SearchEnd::kUndecidable : SearchEnd::kAnswered;
-    if (!fly(batch)) return SearchEnd::kInterrupted;
+    if (!fly(batch)) {
+      axis.next_levels(0);
+      return SearchEnd::kInterrupted;
+    }
     std::ranges::for_each(batch, take);
   }
   return SearchEnd::kFailing;

@@ -51,7 +51,7 @@ inline constexpr std::size_t kMostCopies = 20;
 
 enum class SearchEnd {
   kAnswered,
-  kInterrupted,
+  kInterrupted,  ///< the axis has the answer of the flights so far
   kFailing,      ///< flight after flight failed
   kUndecidable,  ///< no flight has a value for the limit
 };
