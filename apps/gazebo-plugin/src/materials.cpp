@@ -14,7 +14,6 @@ namespace {
 
 using sim::protocol::VisualMaterial;
 
-constexpr const char* kGroup = "General";
 constexpr float kShininess = 32.0F;
 
 Ogre::ColourValue colour(const uav::Vec3& rgb) {
@@ -37,7 +36,7 @@ void load_texture(const std::string& file) {
   } catch (const Ogre::Exception&) {
     throw Error(ErrorCode::kSetup, file + ": texture is not a PNG file");
   }
-  Ogre::TextureManager::getSingleton().loadImage(file, kGroup, image);
+  Ogre::TextureManager::getSingleton().loadImage(file, Ogre::ResourceGroupManager::DEFAULT_RESOURCE_GROUP_NAME, image);
 }
 
 // The texture multiplies the lit colours, which are at most white, in a second pass. In a single
@@ -62,7 +61,7 @@ Ogre::Pass* blended_texture_pass(Ogre::Pass& lit) {
 
 std::string make_material(const VisualMaterial& wanted, const TextureRepeat& repeat) {
   const std::string name = "tether/" + name_of(wanted);
-  Ogre::MaterialPtr material = Ogre::MaterialManager::getSingleton().create(name, kGroup);
+  Ogre::MaterialPtr material = Ogre::MaterialManager::getSingleton().create(name, Ogre::ResourceGroupManager::DEFAULT_RESOURCE_GROUP_NAME);
   Ogre::Pass* lit = material->getTechnique(0)->getPass(0);
   Ogre::ColourValue diffuse = colour(wanted.diffuse_rgb);
   diffuse.a = static_cast<float>(wanted.alpha);
@@ -91,7 +90,7 @@ void make_mesh(const std::string& name, const BoxMesh& box) {
   }
   for (const auto& t : box.triangles) object.triangle(t[0], t[1], t[2]);
   object.end();
-  object.convertToMesh(name, kGroup);
+  object.convertToMesh(name, Ogre::ResourceGroupManager::DEFAULT_RESOURCE_GROUP_NAME);
 }
 
 Ogre::Entity* entity_of(Ogre::SceneNode& node) {

@@ -22,8 +22,6 @@ namespace {
 using sim::protocol::Picture;
 using sim::protocol::Render;
 
-constexpr const char* kGroup = "General";
-
 Ogre::Vector3 to_ogre(const uav::Vec3& v) {
   return Ogre::Vector3(static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z));
 }
@@ -131,7 +129,7 @@ Pictures::Pictures(::gazebo::rendering::ScenePtr scene,
 
 void Pictures::make_canvas(int max_width_px, int max_height_px) {
   const Ogre::TexturePtr texture = Ogre::TextureManager::getSingleton().createManual(
-      "tether", kGroup, Ogre::TEX_TYPE_2D, static_cast<unsigned>(max_width_px),
+      "tether", Ogre::ResourceGroupManager::DEFAULT_RESOURCE_GROUP_NAME, Ogre::TEX_TYPE_2D, static_cast<unsigned>(max_width_px),
       static_cast<unsigned>(max_height_px), 0, Ogre::PF_BYTE_RGB, Ogre::TU_RENDERTARGET);
   texture_ = texture->getBuffer()->getRenderTarget();
   texture_->setAutoUpdated(false);
