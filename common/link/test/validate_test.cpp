@@ -94,6 +94,10 @@ TEST(Validate, Requests) {
   expect({"", request_with(Finish{true, "facing the anchor", ""})});
   expect({"outcome", request_with(Finish{true, std::string(5000, 'x'), ""})});
   expect({"details", request_with(Finish{true, "", "[1]"})});
+  const std::size_t levels = (kMaxJsonBytes - 6) / 2;  // as many lists within each other as fit
+  expect({"details",
+          request_with(Finish{
+              true, "", "{\"a\":" + std::string(levels, '[') + std::string(levels, ']') + "}"})});
   expect({"byte 1, \"]}\"", request_with(Finish{true, "", "{]}"})});
   expect({"byte 1", request_with(Finish{true, "", "{"})});
   expect({"byte 1, \"??[2J\"", request_with(Finish{true, "", "{\xc3\x1b[2J"})});
