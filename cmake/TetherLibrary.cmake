@@ -77,12 +77,13 @@ if(CMAKE_UNITY_BUILD AND BUILD_TESTING AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   endif()
 endif()
 
-# tether_optimise(<target> [BUSY]): what is compiled for the host, and does not compute for long, need not be fast in a
-# test. What runs on the target is as shipped: a test of counted work counts it.
+# tether_optimise(<target> [BUSY | IDLE]): what is compiled for the host, and does not compute for long, need not be fast in
+# a test, nor need a library of tests (IDLE). What runs on the target is as shipped: a test of counted work counts it.
 function(tether_optimise target)
   if("BUSY" IN_LIST ARGN AND TETHER_OPTIMISE_BUSY)
     target_compile_options(${target} PRIVATE ${TETHER_OPTIMISE_BUSY})
-  elseif(TETHER_OPTIMISE_IDLE AND NOT "BUSY" IN_LIST ARGN AND CMAKE_CURRENT_SOURCE_DIR MATCHES "/(host|apps/tether)(/|$)")
+  elseif(TETHER_OPTIMISE_IDLE AND ("IDLE" IN_LIST ARGN OR
+      (NOT "BUSY" IN_LIST ARGN AND CMAKE_CURRENT_SOURCE_DIR MATCHES "/(host|apps/tether)(/|$)")))
     # Optimised that little, the standard library's own code sets this warning off.
     target_compile_options(${target} PRIVATE ${TETHER_OPTIMISE_IDLE} -Wno-maybe-uninitialized)
     if(TARGET tether_idle_library_headers)
@@ -124,7 +125,7 @@ endif()
 #   LABELS   see tether_add_test
 #   TIMEOUT  seconds for the whole entry
 #   COST     see tether_add_test
-#   SERIAL   see tether_add_test; they become an entry of their own
+#   SERIAL   see tether_add_test; they become an entry of their own, with the label "alone" in place of "system"
 #   EVERY_CHANGE  of a test with the label "full": the cases (a --gtest_filter) that each change runs all the same
 #   CASES    which cases of the program the entry has (a --gtest_filter of suites); all by default
 function(_tether_register_test target name)
@@ -151,7 +152,9 @@ function(_tether_register_test target name)
     set(ARG_EVERY_CHANGE "${ARG_CASES}")
   endif()
   if(ARG_SERIAL)
-    _tether_add_test_entry(${target} ${name}.alone "${ARG_SERIAL}" "${ARG_LABELS}" ${ARG_TIMEOUT} 0)
+    set(labels ${ARG_LABELS})
+    list(TRANSFORM labels REPLACE "^system$" alone)
+    _tether_add_test_entry(${target} ${name}.alone "${ARG_SERIAL}" "${labels}" ${ARG_TIMEOUT} 0)
     set_tests_properties(${name}.alone PROPERTIES RUN_SERIAL TRUE)
     set(ARG_EVERY_CHANGE "${ARG_CASES}-${ARG_SERIAL}")
   endif()
@@ -205,6 +208,7 @@ function(tether_add_library name)
     add_library(${target}_testing STATIC ${ARG_TESTING_SOURCES})
     target_include_directories(${target}_testing PUBLIC testing/include)
     target_link_libraries(${target}_testing PUBLIC ${target} PRIVATE tether_compile_options)
+    tether_optimise(${target}_testing IDLE)
     add_library(tether::${name}_testing ALIAS ${target}_testing)
   endif()
   if(ARG_TESTS)

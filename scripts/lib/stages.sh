@@ -21,11 +21,11 @@ stage() {
   stage_seconds+=("$((SECONDS - since))")
 }
 
-# beside NAME COMMAND...: starts what mostly waits, such as a download. It runs beside the stages that follow, in a
-# process group of its own, until one of them awaits it.
+# beside NAME COMMAND...: starts a download, or a build that takes what the stages leave of the cores. It runs beside the
+# stages that follow, in a process group of its own, until one of them awaits it.
 beside() {
   mkdir -p "$ROOT/build"
-  setsid nice "${@:2}" >"$ROOT/build/$1.log" 2>&1 &
+  setsid nice -n 19 "${@:2}" >"$ROOT/build/$1.log" 2>&1 &
   beside_pids[$1]=$!
 }
 
