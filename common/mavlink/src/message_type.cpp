@@ -77,7 +77,6 @@ MessageType parse(const Row& row) {
     field.offset = type.length;
     type.length += field.count * size_of(field.type);
     if (is_extension) continue;
-    type.base_length = type.length;
     add_word(name(field.type));
     add_word(field.name);
     if (field.is_array) crc.add(static_cast<std::uint8_t>(field.count));

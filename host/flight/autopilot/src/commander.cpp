@@ -240,7 +240,6 @@ int Commander::start_mission(const Command& command) {
 
 void Commander::enter(Mode mode) {
   vehicle_->mode = mode;
-  vehicle_->mode_since = vehicle_->now;
   vehicle_->is_failsafe = false;
   navigator_->begin(*vehicle_, *missions_);
   telemetry_->request("HEARTBEAT");

@@ -33,7 +33,6 @@ struct Vehicle {
   bool is_landed = true;
   std::optional<SimTime> landed_at{};  ///< since it is landed
   Mode mode = Mode::kHold;
-  SimTime mode_since{};
   bool is_failsafe = false;
   uav::Vec3 home_W;
   double home_yaw_W_rad = 0.0;

@@ -16,7 +16,7 @@ TEST(MetricKinds, HaveDistinctNamesAndLabelsAndAllTheirTexts) {
   for (const MetricKind& kind : metric_kinds()) {
     EXPECT_TRUE(names.insert(kind.name).second) << kind.name;
     EXPECT_TRUE(labels.insert(kind.label).second) << kind.label;
-    EXPECT_FALSE(kind.label.empty() || kind.unit.empty() || kind.help.empty()) << kind.name;
+    EXPECT_FALSE(kind.label.empty() || kind.unit.empty()) << kind.name;
   }
   EXPECT_FALSE(names.empty());
   EXPECT_EQ(unit_suffix("1") + unit_suffix("deg"), "_deg");

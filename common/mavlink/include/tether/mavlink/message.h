@@ -43,10 +43,9 @@ struct Field {
 struct MessageType {
   std::uint32_t id = 0;
   std::string_view name;
-  std::uint8_t crc_extra = 0;   ///< of names and types, so that peers with other ones differ
-  std::vector<Field> fields;    ///< in the order of the payload
-  std::size_t base_length = 0;  ///< of the payload without extensions
-  std::size_t length = 0;       ///< with them; at most 255
+  std::uint8_t crc_extra = 0;  ///< of names and types, so that peers with other ones differ
+  std::vector<Field> fields;   ///< in the order of the payload
+  std::size_t length = 0;      ///< with them; at most 255
 
   /// nullptr: it has none of that name.
   const Field* field(std::string_view wanted) const;

@@ -27,7 +27,7 @@ struct Metric {
   int limit_line = 0;           ///< of its limit or, without one, of its kind
 };
 
-/// A kind of metric and the keys that it supports.
+/// A kind of metric (docs/guide/scenario.md defines it) and the keys that it supports.
 struct MetricKind {
   std::string_view name;
   std::string_view label;
@@ -38,10 +38,9 @@ struct MetricKind {
   bool has_speed_threshold = false;
   bool is_better_if_more = false;  ///< its limit is a minimum
   bool of_any_flight = false;      ///< it has a value even if the SUT missed its goal
-  std::string_view help;           ///< one line: the definition
 };
 
-/// All kinds, in the order in which help lists them.
+/// All kinds.
 std::span<const MetricKind> metric_kinds();
 
 /// nullptr if there is none of that name.
