@@ -8,6 +8,7 @@
 #include "run_log.h"
 #include "session.h"
 #include "stepper.h"
+#include "time/real_time_limit.h"
 #include "time/timelines.h"
 #include "watchdog.h"
 
@@ -16,7 +17,6 @@
 #include <vector>
 
 #include <tether/coordinator/coordinator.h>
-#include <tether/sync/real_time_limit.h>
 
 namespace tether::coordinator {
 
@@ -119,7 +119,7 @@ class Coordinator::Impl {
   std::vector<Session> sessions_;  // one per UAV, in the world's order
   RadioTraffic radio_;
   ControllerLinks controllers_;
-  std::optional<sync::RealTimeLimit> pace_;
+  std::optional<RealTimeLimit> pace_;
   std::optional<WallTime> began_;  // when every SUT had joined
   Watchdog watchdog_;
   ThreadLooks looks_;

@@ -1,10 +1,10 @@
 #include "time/own_time.h"
 
+#include "time/execution_timer.h"
+
 #include <algorithm>
 #include <cassert>
 #include <vector>
-
-#include <tether/sync/execution_timer.h>
 
 namespace tether::coordinator {
 namespace {
@@ -34,7 +34,7 @@ class UnstampedTime final : public OwnTime {
   }
 
  private:
-  sync::ExecutionTimer timer_;
+  ExecutionTimer timer_;
 };
 
 class ConcurrentTime final : public OwnTime {

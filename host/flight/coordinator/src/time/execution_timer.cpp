@@ -1,6 +1,6 @@
-#include <tether/sync/execution_timer.h>
+#include "time/execution_timer.h"
 
-namespace tether::sync {
+namespace tether::coordinator {
 
 ExecTime ExecutionTimer::pause(WallTime now) {
   base_et_ = read(now);
@@ -14,4 +14,4 @@ void ExecutionTimer::resume(WallTime now, ExecTime at) {
   held_ = false;
 }
 
-}  // namespace tether::sync
+}  // namespace tether::coordinator

@@ -1,8 +1,8 @@
+#include "time/execution_timer.h"
+
 #include <gtest/gtest.h>
 
-#include <tether/sync/execution_timer.h>
-
-namespace tether::sync {
+namespace tether::coordinator {
 namespace {
 
 ExecTime et_ns(std::int64_t ns) {
@@ -24,4 +24,4 @@ TEST(ExecutionTimer, RunsWithTheWallClockAndPausesWhileHeld) {
 }
 
 }  // namespace
-}  // namespace tether::sync
+}  // namespace tether::coordinator

@@ -1,9 +1,9 @@
+#include "time/real_time_limit.h"
+
 #include <algorithm>
 #include <cmath>
 
-#include <tether/sync/real_time_limit.h>
-
-namespace tether::sync {
+namespace tether::coordinator {
 
 RealTimeLimit::RealTimeLimit(double factor, Duration max_credit, WallTime now)
     : factor_(factor), max_credit_(max_credit), last_(now) {}
@@ -26,4 +26,4 @@ Duration RealTimeLimit::wait_for(Duration wanted) const {
   return Duration(std::llround(std::ceil(static_cast<double>(missing.count()) / factor_)));
 }
 
-}  // namespace tether::sync
+}  // namespace tether::coordinator

@@ -2,7 +2,7 @@
 
 #include <tether/base/time.h>
 
-namespace tether::sync {
+namespace tether::coordinator {
 
 /// ET of a SUT that does not stamp its requests, as in the paper (Section II): a timer on the
 /// coordinator's clock, paused while the SUT is held. It charges link time to the SUT, so records
@@ -26,4 +26,4 @@ class ExecutionTimer {
   bool held_ = false;
 };
 
-}  // namespace tether::sync
+}  // namespace tether::coordinator

@@ -1,8 +1,8 @@
+#include "time/real_time_limit.h"
+
 #include <gtest/gtest.h>
 
-#include <tether/sync/real_time_limit.h>
-
-namespace tether::sync {
+namespace tether::coordinator {
 namespace {
 
 using std::chrono::milliseconds;
@@ -29,4 +29,4 @@ TEST(RealTimeLimit, LosesIdleTimeAndTimeAboveTheCredit) {
 }
 
 }  // namespace
-}  // namespace tether::sync
+}  // namespace tether::coordinator

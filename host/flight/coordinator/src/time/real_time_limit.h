@@ -2,7 +2,7 @@
 
 #include <tether/base/time.h>
 
-namespace tether::sync {
+namespace tether::coordinator {
 
 /// A limit on the speed of ST relative to WT: the pace of a free-running simulation, or a simulator
 /// that is slowed down. Unused time is lost beyond a small credit, as in other simulators: one that
@@ -30,4 +30,4 @@ class RealTimeLimit {
   WallTime last_;
 };
 
-}  // namespace tether::sync
+}  // namespace tether::coordinator
