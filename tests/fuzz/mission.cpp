@@ -1,9 +1,9 @@
 #include "fuzz_target.h"
+#include "rig_file.h"
 
 #include <set>
 
 #include <tether/rig/mission.h>
-#include <tether/rig/rig_file.h>
 
 /// Mission files and rig files: what people write for `tether-sut`. Input: the file, read as both.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -36,7 +36,8 @@ void load_texture(const std::string& file) {
   } catch (const Ogre::Exception&) {
     throw Error(ErrorCode::kSetup, file + ": texture is not a PNG file");
   }
-  Ogre::TextureManager::getSingleton().loadImage(file, Ogre::ResourceGroupManager::DEFAULT_RESOURCE_GROUP_NAME, image);
+  Ogre::TextureManager::getSingleton().loadImage(
+      file, Ogre::ResourceGroupManager::DEFAULT_RESOURCE_GROUP_NAME, image);
 }
 
 // The texture multiplies the lit colours, which are at most white, in a second pass. In a single
@@ -61,7 +62,8 @@ Ogre::Pass* blended_texture_pass(Ogre::Pass& lit) {
 
 std::string make_material(const VisualMaterial& wanted, const TextureRepeat& repeat) {
   const std::string name = "tether/" + name_of(wanted);
-  Ogre::MaterialPtr material = Ogre::MaterialManager::getSingleton().create(name, Ogre::ResourceGroupManager::DEFAULT_RESOURCE_GROUP_NAME);
+  Ogre::MaterialPtr material = Ogre::MaterialManager::getSingleton().create(
+      name, Ogre::ResourceGroupManager::DEFAULT_RESOURCE_GROUP_NAME);
   Ogre::Pass* lit = material->getTechnique(0)->getPass(0);
   Ogre::ColourValue diffuse = colour(wanted.diffuse_rgb);
   diffuse.a = static_cast<float>(wanted.alpha);

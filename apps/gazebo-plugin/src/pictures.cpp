@@ -129,8 +129,9 @@ Pictures::Pictures(::gazebo::rendering::ScenePtr scene,
 
 void Pictures::make_canvas(int max_width_px, int max_height_px) {
   const Ogre::TexturePtr texture = Ogre::TextureManager::getSingleton().createManual(
-      "tether", Ogre::ResourceGroupManager::DEFAULT_RESOURCE_GROUP_NAME, Ogre::TEX_TYPE_2D, static_cast<unsigned>(max_width_px),
-      static_cast<unsigned>(max_height_px), 0, Ogre::PF_BYTE_RGB, Ogre::TU_RENDERTARGET);
+      "tether", Ogre::ResourceGroupManager::DEFAULT_RESOURCE_GROUP_NAME, Ogre::TEX_TYPE_2D,
+      static_cast<unsigned>(max_width_px), static_cast<unsigned>(max_height_px), 0,
+      Ogre::PF_BYTE_RGB, Ogre::TU_RENDERTARGET);
   texture_ = texture->getBuffer()->getRenderTarget();
   texture_->setAutoUpdated(false);
   viewport_ = texture_->addViewport(camera_);

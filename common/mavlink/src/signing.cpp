@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <tether/mavlink/signing.h>
+#include <tether/mavlink/frame.h>
 
 namespace tether::mavlink {
 namespace {

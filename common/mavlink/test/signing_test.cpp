@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <tether/mavlink/frame.h>
-#include <tether/mavlink/signing.h>
 
 namespace tether::mavlink {
 namespace {

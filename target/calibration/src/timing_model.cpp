@@ -3,7 +3,7 @@
 #include <string>
 #include <utility>
 
-#include <tether/calibration/timing_model.h>
+#include <tether/calibration/characterize.h>
 
 // Derives a sensor's period and delays from its acquisitions. Steps between timestamps give the
 // period; a regression of the delays over time shows whether timestamps and clock run at the same

@@ -3,7 +3,7 @@
 
 #include <gmock/gmock.h>
 
-#include <tether/calibration/timing_model.h>
+#include <tether/calibration/characterize.h>
 
 namespace tether::calibration {
 namespace {

@@ -1,10 +1,11 @@
+#include "rig_file.h"
+
 #include <algorithm>
 #include <utility>
 #include <vector>
 
 #include <tether/base/result.h>
 #include <tether/rig/device_arguments.h>
-#include <tether/rig/rig_file.h>
 
 // Combines the rig's file with devices of the command line: assigns each device to a sensor of its
 // kind, removes sensors without a device, and checks that the sensors of each task have a device

@@ -1,3 +1,5 @@
+#include "rig_file.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,7 +9,6 @@
 #include <vector>
 
 #include <tether/base/units.h>
-#include <tether/rig/rig_file.h>
 #include <tether/toml/table.h>
 
 // Reads rig files: first the sensors with their mounting and, by kind, lens or limits, then the

@@ -1,3 +1,5 @@
+#include "rig_file.h"
+
 #include <array>
 #include <cmath>
 #include <utility>
@@ -6,7 +8,6 @@
 #include <gmock/gmock.h>
 
 #include <tether/base/units.h>
-#include <tether/rig/rig_file.h>
 
 namespace tether::rig {
 namespace {

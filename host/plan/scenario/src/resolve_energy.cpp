@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <tether/energy/propulsion.h>
+#include <tether/energy/meter.h>
 #include <tether/scenario/scenario.h>
 
 namespace tether::scenario {

@@ -16,7 +16,7 @@
 #include <tether/base/random.h>
 #include <tether/base/suggest.h>
 #include <tether/base/units.h>
-#include <tether/scenario/vary.h>
+#include <tether/scenario/scenario.h>
 #include <tether/sim/bodies.h>
 #include <tether/sim/clearance.h>
 

@@ -8,7 +8,6 @@
 
 #include <tether/base/units.h>
 #include <tether/scenario/scenario.h>
-#include <tether/scenario/vary.h>
 
 namespace tether::scenario {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include <tether/judge/flight_watch.h>
+#include <tether/judge/judge.h>
 
 namespace tether::judge {
 namespace {

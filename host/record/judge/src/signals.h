@@ -8,7 +8,7 @@
 #include <tether/mission/condition.h>
 #include <tether/record/reader.h>
 #include <tether/record/tracks.h>
-#include <tether/stl/formula.h>
+#include <tether/stl/robustness.h>
 
 namespace tether::judge {
 

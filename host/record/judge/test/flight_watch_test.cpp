@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <tether/judge/flight_watch.h>
+#include <tether/judge/judge.h>
 
 namespace tether::judge {
 namespace {

@@ -1,6 +1,6 @@
 #include <cassert>
 
-#include <tether/stl/formula.h>
+#include <tether/stl/robustness.h>
 
 namespace tether::stl {
 

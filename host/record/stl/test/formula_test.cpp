@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
 
-#include <tether/stl/formula.h>
+#include <tether/stl/robustness.h>
 
 namespace tether::stl {
 namespace {

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include <tether/base/units.h>
-#include <tether/campaign/true_roi.h>
+#include <tether/campaign/metrics.h>
 #include <tether/record/tracks.h>
 
 /// The SUT's own estimates against ground truth (paper, Tables II and V): each metric reads the

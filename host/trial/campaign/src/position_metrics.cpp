@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include <tether/campaign/metrics.h>
-#include <tether/campaign/true_roi.h>
 #include <tether/record/tracks.h>
 
 /// The UAV's final position against the intended one (paper, Tables IV and V).

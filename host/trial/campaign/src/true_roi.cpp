@@ -4,7 +4,7 @@
 #include <vector>
 
 #include <tether/base/units.h>
-#include <tether/campaign/true_roi.h>
+#include <tether/campaign/metrics.h>
 #include <tether/uav/camera_model.h>
 
 // An anchor's outline is sampled in its own frame, projected point by point with the camera's lens,

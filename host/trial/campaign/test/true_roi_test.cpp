@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <tether/base/units.h>
-#include <tether/campaign/true_roi.h>
+#include <tether/campaign/metrics.h>
 
 namespace tether::campaign {
 namespace {

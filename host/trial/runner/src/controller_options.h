@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include <tether/coordinator/coordinator.h>
-#include <tether/scenario/flight_controller.h>
+#include <tether/scenario/scenario.h>
 #include <tether/sim/simulator.h>
 
 namespace tether::runner {

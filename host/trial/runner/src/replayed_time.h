@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <tether/coordinator/given_time.h>
+#include <tether/coordinator/coordinator.h>
 #include <tether/record/messages.h>
 #include <tether/runner/trial.h>
 #include <tether/timing/replay.h>

@@ -15,7 +15,7 @@
 #include <tether/base/error.h>
 #include <tether/base/version.h>
 #include <tether/board/target_probe.h>
-#include <tether/judge/flight_watch.h>
+#include <tether/judge/judge.h>
 #include <tether/os/machine.h>
 #include <tether/runner/trial_folder.h>
 #include <tether/sync/clock_plausibility.h>

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <tether/energy/battery.h>
+#include <tether/energy/meter.h>
 
 namespace tether::energy {
 

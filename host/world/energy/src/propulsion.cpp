@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include <tether/energy/propulsion.h>
+#include <tether/energy/meter.h>
 
 namespace tether::energy {
 namespace {

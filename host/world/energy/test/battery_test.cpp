@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include <tether/energy/battery.h>
+#include <tether/energy/meter.h>
 
 namespace tether::energy {
 namespace {

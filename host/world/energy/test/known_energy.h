@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <tether/energy/battery.h>
-#include <tether/energy/propulsion.h>
+#include <tether/energy/meter.h>
 
 /// What the models say in closed form or by another way, to compare flights with.
 namespace tether::energy {

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include <tether/energy/propulsion.h>
+#include <tether/energy/meter.h>
 
 namespace tether::energy {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include <tether/scenario/flight_controller.h>
+#include <tether/scenario/scenario.h>
 #include <tether/toml/table.h>
 
 namespace tether::scenario {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include <tether/scenario/vary.h>
+#include <tether/scenario/scenario.h>
 #include <tether/toml/table.h>
 
 namespace tether::scenario {

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include <tether/campaign/true_roi.h>
+#include <tether/campaign/metrics.h>
 #include <tether/record/reader.h>
 
 /// Recorded camera images with regions of interest, for people (paper, Fig. 5).

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include <tether/base/result.h>
-#include <tether/calibration/timing_model.h>
+#include <tether/calibration/characterize.h>
 #include <tether/uav/catalogue.h>
 
 /// Measurements as a profile for scenarios (docs/guide/sensors.md).

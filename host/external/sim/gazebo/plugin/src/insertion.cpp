@@ -1,4 +1,4 @@
-#include <tether/sim_gazebo_plugin/insertion.h>
+#include <tether/sim_gazebo_plugin/simulation.h>
 
 namespace tether::gazebo_plugin {
 

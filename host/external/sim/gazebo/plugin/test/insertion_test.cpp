@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <tether/sim_gazebo_plugin/insertion.h>
+#include <tether/sim_gazebo_plugin/simulation.h>
 
 namespace tether::gazebo_plugin {
 namespace {

@@ -12,7 +12,7 @@
 #include <tether/autopilot/flight_controller.h>
 #include <tether/base/time.h>
 #include <tether/computer/clock.h>
-#include <tether/coordinator/given_time.h>
+#include <tether/link/messages.h>
 #include <tether/link/server.h>
 #include <tether/radio/settings.h>
 #include <tether/record/messages.h>
@@ -26,6 +26,26 @@
 /// sessions of the SUTs, applies the timing of sensors and the decisions of the barrier, and writes
 /// the record.
 namespace tether::coordinator {
+
+/// Gives one SUT its time, by stage, with the clock "replayed". What it gives depends on the calls
+/// so far only. Not thread-safe; used by the thread of Coordinator::run.
+class GivenTime {
+ public:
+  virtual ~GivenTime() = default;
+
+  /// What is different between this program and the one whose time it is; none: nothing. Called
+  /// before the SUT is welcomed.
+  virtual std::optional<std::string> other_build(const link::Hello& hello) const = 0;
+  /// What each stage takes until the next call.
+  virtual std::vector<link::StageTime> given() const = 0;
+  /// Takes the next call of the SUT: a kind of record::Interaction, or the name of a sensor; and
+  /// the stages before it. The difference to what was given, which ends the run; none if there is
+  /// none.
+  virtual std::optional<std::string> take(const std::string& call,
+                                          const std::vector<link::StageTime>& stages) = 0;
+  /// Whether the time of that stage is known.
+  virtual bool knows(const std::string& stage) const = 0;
+};
 
 /// The flight controller of a UAV, and its link to the SUT.
 struct ControllerOptions {

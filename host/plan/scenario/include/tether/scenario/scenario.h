@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include <tether/base/error.h>
@@ -16,17 +17,87 @@
 #include <tether/energy/meter.h>
 #include <tether/mission/mission.h>
 #include <tether/radio/settings.h>
-#include <tether/scenario/flight_controller.h>
 #include <tether/scenario/metric.h>
 #include <tether/scenario/profile.h>
 #include <tether/scenario/target.h>
-#include <tether/scenario/vary.h>
 #include <tether/sim/world.h>
 #include <tether/uav/sensor_timing.h>
 
-/// What a UAV needs to fly, and what its battery has (data/energy/*.toml).
+namespace tether::autopilot {
+struct External;
+enum class GroundStation;
+}  // namespace tether::autopilot
+
+/// Scenario files (TOML): everything that determines a run except the seed. All values here are
+/// checked: names are unique, files exist, numbers are in their ranges.
 namespace tether::scenario {
 
+// ---- What differs from flight to flight (docs/guide/scenario.md): the tables [vary.NAME].
+
+struct Uniform {
+  double least = 0.0, most = 0.0;
+};
+struct Normal {
+  double mean = 0.0, stddev = 0.0;
+};
+struct OneOf {
+  std::vector<double> values;  ///< at least one, equally probable
+};
+using Distribution = std::variant<Uniform, Normal, OneOf>;
+
+/// A quantity of the world, and how it is drawn.
+struct Variation {
+  std::string name;      ///< of its table
+  std::string quantity;  ///< "start_x_m", "mass_factor", "model_yaw_deg", …
+  std::string of;        ///< the UAV, model or UAV.SENSOR; empty: each UAV, or the whole world
+  Distribution distribution;
+  FileLocation at;
+
+  /// "start_x_m of uav1".
+  std::string text() const;
+};
+
+/// The value that a flight got.
+struct Varied {
+  std::string name;
+  std::string what;  ///< Variation::text
+  double value = 0.0;
+
+  friend bool operator==(const Varied&, const Varied&) = default;
+};
+
+/// The names of all quantities.
+std::vector<std::string_view> quantities();
+
+/// Draws the values of a flight and changes `world` by them, but for mountings of sensors, which
+/// profiles may replace: see `vary_mountings`. Models are placed again, up to 100 times, until they
+/// touch nothing that they do not touch in the file; meshes are not looked at. The same seed always
+/// gives the same world.
+/// `is_read_elsewhere`: an external simulator reads the world's file itself.
+/// @throws Error(kBadFile) at the table: `of` names nothing, a value is impossible (a mass that is
+///   not above 0), there is no room for a model, or the simulator would not see the change.
+std::vector<Varied> vary(const std::vector<Variation>& variations, std::uint64_t seed,
+                         bool is_read_elsewhere, sim::World& world);
+/// Turns and moves the sensors. @pre after `resolve_sensors`
+void vary_mountings(const std::vector<Variation>& variations, const std::vector<Varied>& values,
+                    sim::World& world);
+
+/// The flight controller of a UAV: to its program, the UAV is what it is behind that.
+struct FlightController {
+  const autopilot::External* external = nullptr;  ///< one that the user brings; nullptr: built-in
+  std::filesystem::path path{};                   ///< of its build; absolute
+  Duration boot{0};                               ///< of its time, at most, before the flight
+  double link_baud = 0.0;        ///< of the line to the program; 0: bytes take no time
+  Duration link_latency{0};      ///< each way
+  bool starts_in_air = false;    ///< of the built-in one
+  bool has_fixed_ports = false;  ///< flights with it cannot be parallel
+  std::map<std::string, double> parameters{};
+  autopilot::GroundStation ground_station{};  ///< what one may do; first: there is none
+  std::uint16_t ground_station_port = 0;
+  FileLocation at{};
+};
+
+/// What a UAV needs to fly, and what its battery has (data/energy/*.toml).
 struct Energy {
   std::filesystem::path file;  ///< absolute
   energy::Model model;         ///< without `battery` if the file has none
@@ -38,9 +109,6 @@ struct Energy {
 /// Reads and checks an energy file (docs/guide/energy.md).
 /// @throws Error(kBadFile) as `load_scenario`, also of a battery that cannot exist.
 Energy load_energy(const std::filesystem::path& file);
-
-// Scenario files (TOML): everything that determines a run except the seed. All values here are
-// checked: names are unique, files exist, numbers are in their ranges.
 
 enum class Policy { kConservativeBarrier, kFreeRunning };
 /// As written in files: "conservative_barrier", "free_running".

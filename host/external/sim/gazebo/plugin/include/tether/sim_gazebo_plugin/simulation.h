@@ -10,6 +10,10 @@
 
 namespace tether::gazebo_plugin {
 
+/// The SDF of a UAV with an inactive camera sensor added to its only link: Gazebo maintains a scene
+/// only for a world with a camera. Unchanged without a link.
+std::string with_idle_camera(const std::string& sdf);
+
 namespace protocol = sim::protocol;
 
 /// Two shapes that touch, at one point. The numbers of bodies are as in `Simulation::bodies`.
