@@ -14,6 +14,14 @@ std::vector<MovingBody> moving_bodies(const World& world) {
   return bodies;
 }
 
+std::vector<TurnedPart> turned_parts(const World& world) {
+  std::vector<TurnedPart> parts;
+  for (std::size_t uav = 0; uav < world.uavs.size(); ++uav)
+    for (std::size_t joint = 0; joint < world.uavs[uav].joints.size(); ++joint)
+      parts.push_back({uav, joint + 1});
+  return parts;
+}
+
 DrivenState driven_state(const MovingBody& body, SimTime at) {
   const uav::PathState path = state_at(*body.model->path, at - SimTime{});
   const uav::Pose X_WO{body.model->path->p_WO, {}};

@@ -72,11 +72,13 @@ class SceneBuilder {
   SceneBuilder(const MeshFiles& mesh_files, bool is_strict, const WarningSink& warn)
       : mesh_files_(mesh_files), is_strict_(is_strict), warn_(warn) {}
 
+  /// `turned` is the body before the first of its parts behind joints.
   void add_link(const Link& link, const Pose& X, std::optional<std::size_t> body,
-                std::uint32_t entity) {
+                std::uint32_t entity, std::size_t turned = 0) {
     for (const Visual& visual : link.visuals) {
       raster::Instance instance;
-      instance.body = body;
+      instance.body = visual.joints == 0 ? body : turned + visual.joints;
+      instance.hidden_with = body;
       instance.X_BV = X * visual.X_LV;
       instance.cast_shadows = visual.cast_shadows;
       instance.entity = entity;
@@ -289,9 +291,12 @@ raster::SceneParts make_scene(const World& world, const WarningSink& warn,
     builder.add_link(*body.link, body.X_WB, std::nullopt, number_of(body.model));
   }
   const std::vector<MovingBody> moving = moving_bodies(world);
+  std::size_t turned = moving.size() - 1;
   for (std::size_t i = 0; i < moving.size(); ++i) {
     const auto uav = static_cast<std::uint32_t>(world.models.size() + i) + 1;
-    builder.add_link(*moving[i].link, {}, i, moving[i].uav ? uav : number_of(moving[i].model));
+    builder.add_link(*moving[i].link, {}, i, moving[i].uav ? uav : number_of(moving[i].model),
+                     turned);
+    turned += moving[i].uav ? moving[i].uav->joints.size() : 0;
   }
   for (const Light& light : world.lights) builder.add_light(light);
   raster::SceneParts parts = builder.take();

@@ -7,8 +7,9 @@
 
 namespace tether::sim {
 
-/// The world's visuals and lights for the renderer. An instance's body is one of `moving_bodies`;
-/// its entity is the number of its model, from 1 on: the world's models, then the UAVs.
+/// The world's visuals and lights for the renderer. An instance's body is one of `moving_bodies`,
+/// or one of `turned_parts` after them; its entity is the number of its model, from 1 on: the
+/// world's models, then the UAVs.
 ///
 /// Warns of lights beyond the 32nd, of point lights that should cast shadows, of damaged textures,
 /// of textures that are halved because all have too many pixels, and of those that cannot be read,

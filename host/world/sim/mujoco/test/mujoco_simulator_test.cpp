@@ -35,6 +35,40 @@ TEST(MujocoSimulatorTest, DrawsWhatIsExpectedAfterTheFirstPicture) {
   EXPECT_EQ(work, (SimulatorWork{.pictures = 2, .drawn_ahead = 1, .drawn_in_vain = 0}));
 }
 
+/// "beta", 1.5 m ahead, with an arm of 0.6 m on a joint or held as the joint would hold it.
+World world_with_arm(std::optional<double> held_rad) {
+  World world = test_world();
+  world.uavs.push_back(test_uav("beta", {1.5, 0.0, 1.0}));
+  for (Uav& uav : world.uavs) {
+    const std::vector<uav::Joint> joints = {{"roll", {}, {1, 0, 0}, -2, 2, 10.0}};
+    Visual arm = box_visual({0.05, 0.6, 0.05}, {1.0, 0.0, 0.0});
+    arm.X_LV.p.y = 0.2;
+    if (held_rad) {
+      arm.X_LV = turned(joints, std::vector{*held_rad}, arm.X_LV);
+    } else {
+      arm.joints = 1;
+      uav.joints = joints;
+    }
+    uav.body.visuals.push_back(arm);
+  }
+  return world;
+}
+
+TEST(MujocoSimulatorTest, OthersSeePartsAtTheAnglesOfTheirJoints) {
+  const auto turning = make_simulator(world_with_arm(std::nullopt));
+  const auto at_rest = make_simulator(world_with_arm(0.0));
+  const auto turned = make_simulator(world_with_arm(1.2));
+  const auto seen = [](Simulator& simulator) {
+    return measure_now<uav::CameraSample>(simulator, kCamera).rgb;
+  };
+  EXPECT_EQ(seen(*turning), seen(*at_rest));
+  for (std::size_t uav = 0; uav < 2; ++uav)
+    turning->apply(uav, {.mask = uav::kJoints, .joints_rad = {1.2}});
+  for (Simulator* simulator : {turning.get(), turned.get()}) simulator->advance_to(SimTime(500ms));
+  EXPECT_EQ(seen(*turning), seen(*turned));
+  EXPECT_NE(seen(*turning), seen(*at_rest));
+}
+
 TEST(MujocoSimulatorTest, NamesItself) {
   EXPECT_THAT(make_simulator(test_world())->description(), ::testing::StartsWith("MuJoCo "));
   EXPECT_TRUE(kHasMujoco);

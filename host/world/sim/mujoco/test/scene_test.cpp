@@ -44,6 +44,21 @@ TEST(SceneTest, FixedThingsAreInTheWorldFrameMovingOnesInTheirBodys) {
   EXPECT_NE(scene.instances[0].entity, scene.instances[1].entity);
 }
 
+TEST(SceneTest, PartsBehindJointsAreBodiesThatAreHiddenWithTheirUav) {
+  World world = test_world();
+  world.uavs.push_back(testing::test_uav("beta", {2.0, 0.0, 1.0}));
+  world.uavs[0].joints = {{"yaw", {}, {0, 0, 1}, -1, 1, 1}};
+  world.uavs[1].joints = {{"yaw", {}, {0, 0, 1}, -1, 1, 1}, {"pitch", {}, {0, 1, 0}, -1, 1, 1}};
+  world.uavs[1].body.visuals.push_back(testing::box_visual({0.1, 0.1, 0.1}, {1, 0, 0}));
+  world.uavs[1].body.visuals.back().joints = 2;
+  const raster::SceneParts scene = make_scene(world, no_warnings());
+  ASSERT_EQ(scene.instances.size(), 4U);
+  EXPECT_EQ(scene.instances[2].body, 1U);
+  EXPECT_EQ(scene.instances[3].body, 2U + 2U);  // the third of both UAVs' joints
+  EXPECT_EQ(scene.instances[3].hidden_with, 1U);
+  EXPECT_EQ(scene.instances[3].entity, scene.instances[2].entity);
+}
+
 TEST(SceneTest, HasAsManyLightsAsTheRendererTakes) {
   World world = test_world();
   for (int i = 0; i < 34; ++i) world.lights.push_back(light_named("l" + std::to_string(i)));

@@ -67,7 +67,9 @@ std::size_t CompositeRenderer::blind_pixels(const uav::CameraModel& camera) {
 void CompositeRenderer::draw_instant(const raster::View& view, double before_end_s,
                                      const Rows& rows, Bytes rgb) {
   raster::interpolate(view, before_end_s, moment_);
-  View ideal{view.camera, view.near_m, view.far_m, {}, moment_.X_WB, view.hidden};
+  const auto X_WB =
+      std::span(moment_.X_WB).first(body_radii_m_.size());  // the others draw no parts
+  View ideal{view.camera, view.near_m, view.far_m, {}, X_WB, view.hidden};
   ideal.X_WS = moment_.X_WC * inverse(uav::Pose{{}, uav::q_body_from_optical()});
   ideal.with_depth = before_end_s == 0.0 && window_s(view) > 0.0;
   if (const ImageWarp* const warp = warp_of(view.camera)) {

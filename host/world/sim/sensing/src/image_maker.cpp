@@ -13,6 +13,7 @@ ImageMaker::ImageMaker(const World& world, CameraRendererFactory make_renderer,
                        raster::Helpers* helpers, const WarningSink& warn)
     : world_(world),
       layout_(world),
+      parts_(turned_parts(world)),
       make_renderer_(std::move(make_renderer)),
       helpers_(helpers),
       warn_(warn) {}
@@ -69,14 +70,20 @@ void ImageMaker::draw(const CameraModel& camera, const Request& r, raster::Pictu
 
 // The steps that the shutter reaches back, and the image's own instant.
 void ImageMaker::place_instants(const CameraModel& camera, const Request& r) {
-  const std::size_t bodies = layout_.bodies();
+  const std::size_t bodies = layout_.bodies() + parts_.size();
   const std::size_t steps = shutter_steps(camera, world_.step);
   poses_.resize((steps + 1) * bodies);
   instants_.clear();
   for (std::size_t i = 0; i <= steps; ++i) {
     const auto X_WB = std::span(poses_).subspan(i * bodies, bodies);
-    for (std::size_t body = 0; body < bodies; ++body) {
+    for (std::size_t body = 0; body < layout_.bodies(); ++body) {
       X_WB[body] = layout_.past_pose_of(r.state, body, steps - i);
+    }
+    for (std::size_t k = 0; k < parts_.size(); ++k) {
+      // The camera's own UAV is hidden: its parts move nothing in the picture.
+      const std::size_t ago = parts_[k].uav == r.uav ? 0 : steps - i;
+      X_WB[layout_.bodies() + k] = layout_.past_pose_of(r.state, parts_[k].uav, ago) *
+                                   layout_.turned_pose(r.state, world_, parts_[k], {}, ago);
     }
     const uav::Pose X_BC = layout_.mounting(r.state, world_, r.uav, r.sensor, steps - i) *
                            uav::Pose{{}, uav::q_body_from_optical()};

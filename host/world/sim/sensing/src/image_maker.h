@@ -44,6 +44,7 @@ class ImageMaker {
 
   const World& world_;
   StateLayout layout_;
+  std::vector<TurnedPart> parts_;
   CameraRendererFactory make_renderer_;
   raster::Helpers* helpers_;
   WarningSink warn_;

@@ -81,15 +81,14 @@ uav::Pose StateLayout::past_pose_of(const std::vector<double>& state, std::size_
   return read_pose(state.data() + past_at() + row * row_size() + body * kPoseSize);
 }
 
-uav::Pose StateLayout::mounting(const std::vector<double>& state, const World& world,
-                                std::size_t uav, const Sensor& sensor,
-                                std::size_t steps_ago) const {
-  if (sensor.joints == 0) return sensor.X_BS;
+uav::Pose StateLayout::turned_pose(const std::vector<double>& state, const World& world,
+                                   const TurnedPart& part, const uav::Pose& X_B0,
+                                   std::size_t steps_ago) const {
+  if (part.joints == 0) return X_B0;
   const std::size_t end =
       steps_ago == 0 ? past_at() : past_at() + (past_steps_ - steps_ago + 1) * row_size();
-  const std::size_t first = end - joints() + first_joint_[uav];
-  return turned(world.uavs[uav].joints, std::span(state).subspan(first, sensor.joints),
-                sensor.X_BS);
+  const std::size_t first = end - joints() + first_joint_[part.uav];
+  return turned(world.uavs[part.uav].joints, std::span(state).subspan(first, part.joints), X_B0);
 }
 
 }  // namespace tether::sim

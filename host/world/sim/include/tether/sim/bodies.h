@@ -19,6 +19,15 @@ struct MovingBody {
 /// The UAVs in order, then the links of the dynamic models in order. Refers into `world`.
 std::vector<MovingBody> moving_bodies(const World& world);
 
+/// A part of a UAV behind `joints` of its joints. It is drawn as a body of its own.
+struct TurnedPart {
+  std::size_t uav;
+  std::size_t joints;
+};
+/// One for each joint of each UAV in order: part i is drawn as the body after `moving_bodies` and i
+/// more.
+std::vector<TurnedPart> turned_parts(const World& world);
+
 /// What drives a link of a driven model: its motion at an instant of ST.
 struct DrivenState {
   uav::Pose X_WB;

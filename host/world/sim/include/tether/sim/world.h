@@ -101,6 +101,8 @@ struct Visual {
   /// Looks as the file of its mesh says, times the `alpha`, `diffuse_rgb` and `ambient_rgb` of
   /// `material`.
   bool has_look_of_mesh = false;
+  /// Of a UAV: it is behind so many of its joints, and `X_LV` is its pose while they are at 0.
+  std::size_t joints = 0;
 };
 
 struct Collision {

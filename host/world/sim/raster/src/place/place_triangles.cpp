@@ -134,7 +134,7 @@ class Placer {
  private:
   bool is_selected(const PreparedInstance& i) const {
     const bool is_hidden =
-        selection_.hidden && i.body == static_cast<std::int32_t>(*selection_.hidden);
+        selection_.hidden && i.hidden_with == static_cast<std::int32_t>(*selection_.hidden);
     return !is_hidden && (!selection_.only_casters || i.cast_shadows) &&
            (!selection_.only_fixed || i.body < 0) && (!selection_.only_moving || i.body >= 0);
   }

@@ -93,7 +93,8 @@ struct LevelRow {
 struct PreparedInstance {
   std::uint32_t mesh;
   std::uint32_t material;
-  std::int32_t body;  ///< −1: fixed in W
+  std::int32_t body;         ///< −1: fixed in W
+  std::int32_t hidden_with;  ///< a body; −1: never
   std::uint32_t entity;
   std::uint32_t first_primitive;  ///< its triangles are numbered from here, from 1 on
   bool transparent;

@@ -201,6 +201,7 @@ class Preparation {
     out.mesh = static_cast<std::uint32_t>(in.mesh);
     out.material = static_cast<std::uint32_t>(in.material);
     out.body = in.body ? static_cast<std::int32_t>(*in.body) : -1;
+    out.hidden_with = in.hidden_with ? static_cast<std::int32_t>(*in.hidden_with) : out.body;
     out.entity = in.entity;
     out.first_primitive = next_primitive_;
     out.transparent = transparent_materials_[in.material];

@@ -134,8 +134,8 @@ void add_mass(const Link& part, const uav::Pose& X_BL, Uav& uav) {
   uav.body.inertia_kg_m2 = inertia;
 }
 
-/// Visuals, collisions and sensors of a link that hangs on the body, behind so many joints; drawn
-/// as if these were at 0.
+/// Visuals, collisions and sensors of a link that hangs on the body, behind so many joints; it
+/// collides as if these were at 0.
 /// @param is_weighed the body's mass contains it; else the body's inertia is, as it is written,
 /// that of the whole airframe
 void merge_link(const SdfSource& source, const sdf::Link& part, const uav::Pose& X_BM,
@@ -145,6 +145,7 @@ void merge_link(const SdfSource& source, const sdf::Link& part, const uav::Pose&
   for (Visual& visual : link.visuals) {
     visual.name = link.name + "::" + visual.name;
     visual.X_LV = X_BL * visual.X_LV;
+    visual.joints = joints;
     uav.body.visuals.push_back(std::move(visual));
   }
   for (Collision& collision : link.collisions) {

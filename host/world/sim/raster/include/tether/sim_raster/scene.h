@@ -52,12 +52,13 @@ struct Material {
 
 /// One visual of the scene.
 struct Instance {
-  std::size_t mesh = 0;             ///< of SceneParts
-  std::size_t material = 0;         ///< of SceneParts
-  std::optional<std::size_t> body;  ///< the moving body that it is fixed to; none: W
-  uav::Pose X_BV;                   ///< in its body, or in W
-  bool cast_shadows = true;         ///< opaque surfaces only
-  std::uint32_t entity = 0;         ///< written to Picture::entity; 0 is the background
+  std::size_t mesh = 0;                      ///< of SceneParts
+  std::size_t material = 0;                  ///< of SceneParts
+  std::optional<std::size_t> body;           ///< the moving body that it is fixed to; none: W
+  uav::Pose X_BV;                            ///< in its body, or in W
+  bool cast_shadows = true;                  ///< opaque surfaces only
+  std::uint32_t entity = 0;                  ///< written to Picture::entity; 0 is the background
+  std::optional<std::size_t> hidden_with{};  ///< the body with which it is hidden; none: its own
 };
 
 enum class LightKind { kPoint, kDirectional, kSpot };

@@ -20,7 +20,8 @@ class CameraRenderer {
   CameraRenderer(const CameraRenderer&) = delete;
   CameraRenderer& operator=(const CameraRenderer&) = delete;
 
-  /// `view.instants` have the poses of all of `moving_bodies`, in its order; `view.hidden` is one
+  /// `view.instants` have the poses of all of `moving_bodies`, in its order,
+  /// then those of `turned_parts`; `view.hidden` is one
   /// of these. A pixel's entity is the number of its model, as in `model_names`.
   /// @throws Error(kSetup) when the back end is lost.
   virtual void draw(const raster::View& view, const raster::Picture& picture) = 0;

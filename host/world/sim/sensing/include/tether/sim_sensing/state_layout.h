@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include <tether/sim/bodies.h>
 #include <tether/sim/world.h>
 #include <tether/uav/math.h>
 
@@ -52,7 +53,12 @@ class StateLayout {
                          std::size_t steps_ago) const;
   /// Where a sensor of a UAV was, in its body, so many steps before the capture.
   uav::Pose mounting(const std::vector<double>& state, const World& world, std::size_t uav,
-                     const Sensor& sensor, std::size_t steps_ago = 0) const;
+                     const Sensor& sensor, std::size_t steps_ago = 0) const {
+    return turned_pose(state, world, {uav, sensor.joints}, sensor.X_BS, steps_ago);
+  }
+  /// The same of anything on a part, whose pose in the UAV's body is `X_B0` while joints are at 0.
+  uav::Pose turned_pose(const std::vector<double>& state, const World& world,
+                        const TurnedPart& part, const uav::Pose& X_B0, std::size_t steps_ago) const;
   /// How many numbers the past of one step has.
   std::size_t row_size() const;
 
