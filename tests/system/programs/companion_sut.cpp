@@ -1,8 +1,8 @@
-// A companion of a flight controller: companion_sut [COMPUTE_MS] [SIDE_M]
+// A companion of a flight controller: companion_sut [COMPUTE_MS] [SIDE_M] [GIMBAL_DEG]
 //
 // Arms, takes off, flies a square with position set-points at 20 Hz, and lands. Before each
-// set-point it computes for so long. Its end has how far it was from the corners, and what its
-// messages told.
+// set-point it computes for so long. In the air, it points the gimbal down by that angle. Its end
+// has how far it was from the corners, and what its messages told.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -121,6 +121,7 @@ void compute(int ms) {
 int main(int argc, char** argv) {
   const int compute_ms = argc > 1 ? std::atoi(argv[1]) : 0;
   const double side = argc > 2 ? std::atof(argv[2]) : 1.0;
+  const double gimbal_deg = argc > 3 ? std::atof(argv[3]) : 0.0;
   const auto vehicle =
       require(tether::client::connect(require(tether::client::options_from_environment())));
   Companion companion(*vehicle);
@@ -137,6 +138,8 @@ int main(int argc, char** argv) {
       companion.listen(milliseconds(50));
     }
   };
+  constexpr int kMountControl = 205, kByAngles = 2;
+  if (gimbal_deg != 0.0) companion.command(kMountControl, -gimbal_deg, 0, 0, kByAngles);
   fly(0, 0, 1.5);
   companion.command(176, 1, 6);
   std::string errors;

@@ -20,11 +20,12 @@ world = "yard"
 time_limit_s = 40
 [[uav]]
 name = "uav1"
-model = "hummingbird"
+model = ")" + model_ + R"("
 position_m = [0, 0, 0.1]
 flight_controller = )" + controller + R"(
 [sut]
-command = [")" COMPANION_SUT_PROGRAM R"("]
+command = [")" COMPANION_SUT_PROGRAM R"(", "0", "1", ")" +
+                                       gimbal_deg_ + R"("]
 [[condition]]
 name = "host"
 policy = "conservative_barrier"
@@ -38,6 +39,7 @@ computing_ms = )" + computing_ms + "\n[[metric]]\nkind = \"time_required\"\n");
   }
 
   TempFolder folder_;
+  std::string model_ = "hummingbird", gimbal_deg_ = "0";
   nlohmann::json result_;
   std::string said_;
 };

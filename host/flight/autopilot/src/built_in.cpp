@@ -19,8 +19,6 @@
 namespace tether::autopilot {
 namespace {
 
-constexpr std::uint8_t kAutopilot = 1;  // MAV_COMP_ID_AUTOPILOT1
-
 // PX4 sends the bytes of an integer as those of a float.
 double float_of_bytes(std::int32_t value) {
   float as_float = 0.0F;
@@ -94,6 +92,7 @@ class BuiltIn : public FlightController {
         outbox_({settings.system_id, kAutopilot}),
         commander_(vehicle_, navigator_, missions_, offboard_, telemetry_, outbox_) {
     vehicle_.limits = settings.limits;
+    vehicle_.mount = Mount(settings.limits.joints);
     vehicle_.hover_thrust_N = settings.hover_thrust_N;
   }
 
@@ -109,10 +108,7 @@ class BuiltIn : public FlightController {
     missions_.step(vehicle_.now, outbox_);
     parameter_port_.step(vehicle_.parameters, outbox_);
     uav::Setpoint wanted = navigator_.step(vehicle_, missions_, offboard_, since, outbox_);
-    if (!vehicle_.joints_rad.empty()) {
-      wanted.mask |= uav::kJoints;
-      wanted.joints_rad = vehicle_.joints_rad;
-    }
+    vehicle_.mount.add_to(wanted);
     telemetry_.step({vehicle_, sensed, wanted, missions_}, outbox_);
     return {.setpoint = of_truth(wanted, sensed.truth), .sent = outbox_.take()};
   }

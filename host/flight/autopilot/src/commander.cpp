@@ -13,30 +13,18 @@
 namespace tether::autopilot {
 namespace {
 
-// MAV_RESULT.
-constexpr int kAccepted = 0, kRejected = 1, kDenied = 2, kUnsupported = 3, kFailed = 4;
+using namespace command_result;
 
 // MAV_CMD.
 constexpr int kNavLoiter = 17, kNavReturn = 20, kNavLand = 21, kNavTakeoff = 22, kDoSetMode = 176,
-              kDoChangeSpeed = 178, kDoSetHome = 179, kDoReposition = 192, kDoMountControl = 205,
-              kMissionStart = 300, kArmDisarm = 400, kGetHome = 410, kGetInterval = 510,
-              kSetInterval = 511, kRequestMessage = 512, kRequestCapabilities = 520,
-              kDoGimbalPitchYaw = 1000;
+              kDoChangeSpeed = 178, kDoSetHome = 179, kDoReposition = 192, kMissionStart = 300,
+              kArmDisarm = 400, kGetHome = 410, kGetInterval = 510, kSetInterval = 511,
+              kRequestMessage = 512, kRequestCapabilities = 520;
 
 constexpr double kForce = 21196.0;  // parameter 2 of kArmDisarm: without checks
 
-// A whole number; −1: it is none, or negative.
-std::int64_t whole(double value) {
-  return value >= 0.0 && value < 1e9 ? std::llround(value) : -1;
-}
 bool is_place(double latitude_deg, double longitude_deg) {
   return std::abs(latitude_deg) <= 90.0 && std::abs(longitude_deg) <= 180.0;
-}
-// Of COMMAND_INT [1e-7 degrees]; the largest integer stands for none.
-double degrees_of(std::int64_t value) {
-  return value == std::numeric_limits<std::int32_t>::max()
-             ? std::numeric_limits<double>::quiet_NaN()
-             : static_cast<double>(value) * 1e-7;
 }
 const mavlink::MessageType* type_of(double id) {
   return whole(id) < 0 ? nullptr : mavlink::find_type(static_cast<std::uint32_t>(whole(id)));
@@ -56,7 +44,7 @@ constexpr BatteryLevel kBatteryLevels[] = {
 }  // namespace
 
 bool Commander::takes(const mavlink::Message& message) {
-  return message.is("COMMAND_LONG") || message.is("COMMAND_INT") || message.is("SET_MODE");
+  return is_command(message) || message.is("SET_MODE");
 }
 
 void Commander::on_message(const mavlink::Frame& frame) {
@@ -66,27 +54,12 @@ void Commander::on_message(const mavlink::Frame& frame) {
     set_mode(m.integer("base_mode"), custom >> 16 & 0xFFU, custom >> 24);
     return;
   }
-  Command command{.id = static_cast<int>(m.integer("command"))};
-  for (std::size_t i = 1; i <= 4; ++i) command.p[i] = m.number("param" + std::to_string(i));
-  if (m.is("COMMAND_INT")) {
-    command.p[5] = degrees_of(m.integer("x"));
-    command.p[6] = degrees_of(m.integer("y"));
-    command.p[7] = m.number("z");
-    if (command.id == kDoGimbalPitchYaw) command.p[5] = static_cast<double>(m.integer("x"));
-    const auto mav_frame = m.integer("frame");
-    command.is_place_relative = mav_frame == 3 || mav_frame == 6;
-  } else {
-    for (std::size_t i = 5; i <= 7; ++i) command.p[i] = m.number("param" + std::to_string(i));
-  }
-  const int result = run(command);
-  outbox_->send(mavlink::Message("COMMAND_ACK")
-                    .set("command", command.id)
-                    .set("result", result)
-                    .set("target_system", frame.from.system)
-                    .set("target_component", frame.from.component));
+  const Command command = to_command(m);
+  outbox_->send(acknowledgement(command, run(command), frame.from));
 }
 
 int Commander::run(const Command& command) {
+  if (vehicle_->mount.takes(command)) return vehicle_->mount.run(command);
   const auto& p = command.p;
   switch (command.id) {
     case kArmDisarm:
@@ -114,17 +87,6 @@ int Commander::run(const Command& command) {
       return kAccepted;
     case kDoSetHome:
       return set_home(command);
-    case kDoMountControl: {
-      constexpr double kByAngles = 2.0;  // MAV_MOUNT_MODE_MAVLINK_TARGETING
-      return p[7] == kByAngles ? point_mount({p[1], p[2], p[3]}) : kUnsupported;
-    }
-    case kDoGimbalPitchYaw: {
-      const bool is_by_rates = std::isfinite(p[3]) || std::isfinite(p[4]);
-      constexpr std::int64_t kLocks = 4 + 8 + 16;  // roll, pitch, yaw: against the world
-      const std::int64_t flags = whole(p[5]);
-      if (is_by_rates || (flags > 0 && (flags & kLocks) != 0)) return kUnsupported;
-      return point_mount({p[1], std::numeric_limits<double>::quiet_NaN(), p[2]});
-    }
     case kGetHome:
       telemetry_->request("HOME_POSITION");
       return kAccepted;
@@ -287,16 +249,6 @@ int Commander::set_interval(const Command& command) {
   const auto* type = type_of(command.p[1]);
   return type != nullptr && telemetry_->set_interval(type->name, command.p[2]) ? kAccepted
                                                                                : kFailed;
-}
-
-int Commander::point_mount(const MountAngles& wanted) {
-  if (vehicle_->limits.joints.empty()) return kUnsupported;
-  std::vector<double> angles_rad = vehicle_->joints_rad;
-  if (angles_rad.empty())
-    for (const uav::Joint& joint : vehicle_->limits.joints) angles_rad.push_back(start_rad(joint));
-  if (!point(vehicle_->limits.joints, wanted, angles_rad)) return kDenied;
-  vehicle_->joints_rad = std::move(angles_rad);
-  return kAccepted;
 }
 
 int Commander::set_home(const Command& command) {

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "command.h"
 #include "missions.h"
-#include "mount.h"
 #include "navigator.h"
 #include "offboard.h"
 #include "outbox.h"
@@ -35,13 +35,6 @@ class Commander {
   void step();
 
  private:
-  /// A command, from either message. `p`: its parameters 1 to 7, of which 5 and 6 are in degrees
-  /// or metres.
-  struct Command {
-    int id = 0;
-    double p[8] = {};
-    bool is_place_relative = false;  // its altitude is over home
-  };
   int run(const Command& command);
   void enter(Mode mode);
   int set_arming(const Command& command);
@@ -52,7 +45,6 @@ class Commander {
   int reposition(const Command& command);
   int set_interval(const Command& command);
   int set_home(const Command& command);
-  int point_mount(const MountAngles& wanted);
   std::string why_not_arm() const;
   std::string why_not(Mode mode) const;
   /// False: it is denied, and the reason told.

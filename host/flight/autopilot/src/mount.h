@@ -1,9 +1,13 @@
 #pragma once
 
+#include "command.h"
+
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <tether/uav/joint.h>
+#include <tether/uav/setpoint.h>
 
 /// A gimbal by the angles that MAVLink has for it.
 namespace tether::autopilot {
@@ -20,5 +24,28 @@ struct MountAngles {
 /// @pre as many angles as joints
 bool point(std::span<const uav::Joint> joints, const MountAngles& wanted,
            std::vector<double>& angles_rad);
+
+// MAV_CMD.
+inline constexpr int kDoMountControl = 205, kDoGimbalPitchYaw = 1000;
+
+/// The joints of a UAV, by MAVLink's commands for gimbals.
+class Mount {
+ public:
+  Mount() = default;
+  explicit Mount(std::vector<uav::Joint> joints) : joints_(std::move(joints)) {}
+
+  /// Whether it turns by such commands.
+  bool takes(const Command& command) const {
+    return !joints_.empty() && (command.id == kDoMountControl || command.id == kDoGimbalPitchYaw);
+  }
+  /// Its MAV_RESULT. @pre takes(command)
+  int run(const Command& command);
+  /// Once it was pointed: the set-point with its angles.
+  void add_to(uav::Setpoint& setpoint) const;
+
+ private:
+  std::vector<uav::Joint> joints_;
+  std::vector<double> angles_rad_;  // to which they were commanded; empty: they were not
+};
 
 }  // namespace tether::autopilot

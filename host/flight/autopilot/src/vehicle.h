@@ -2,6 +2,7 @@
 
 #include "local_frame.h"
 #include "modes.h"
+#include "mount.h"
 #include "parameters.h"
 
 #include <cstdint>
@@ -36,7 +37,7 @@ struct Vehicle {
   bool is_failsafe = false;
   uav::Vec3 home_W;
   double home_yaw_W_rad = 0.0;
-  std::vector<double> joints_rad{};  ///< to which they were commanded; empty: they were not
+  Mount mount;
 
   double parameter(Parameter which) const { return parameters[which]; }
   Duration time_parameter(Parameter which) const {

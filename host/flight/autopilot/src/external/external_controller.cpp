@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <initializer_list>
+#include <iterator>
 #include <utility>
 
 #include <fmt/format.h>
@@ -11,6 +13,10 @@
 
 namespace tether::autopilot {
 namespace {
+
+bool is_one_of(std::int64_t value, std::initializer_list<std::uint8_t> values) {
+  return std::ranges::find(values, value) != values.end();
+}
 
 // Of AUTOPILOT_VERSION.
 std::string version_of(const mavlink::Message& m) {
@@ -27,7 +33,9 @@ ExternalController::ExternalController(const ExternalSettings& settings, std::st
     : settings_(settings),
       name_(fmt::format("{} of UAV '{}'", name, settings.vehicle.name)),
       link_(std::move(link)),
-      program_(name_, std::move(command)) {}
+      program_(name_, std::move(command)),
+      gimbal_(settings.vehicle.joints),
+      of_gimbal_({static_cast<std::uint8_t>(settings.instance + 1), kGimbal}) {}
 
 void ExternalController::boot() {
   const uav::BodyState truth{settings_.vehicle.X_WB.p, settings_.vehicle.X_WB.q, {}, {}};
@@ -42,7 +50,8 @@ void ExternalController::boot() {
 
 Actions ExternalController::step(const Sensed& sensed, const std::vector<Bytes>& received) {
   Actions actions;
-  if (!received.empty()) pass_on(received);
+  const std::vector<Bytes> for_it = point_gimbal(received);
+  if (!for_it.empty()) pass_on(for_it);
   advance(booted_ + sensed.at.time_since_epoch(), sensed.truth, readings_of(settings_, sensed));
   is_set_down_ = is_set_down_ || set_down_.is_done(sensed.at, sensed.truth);
   actions.setpoint = SetDown::setpoint();
@@ -52,8 +61,30 @@ Actions ExternalController::step(const Sensed& sensed, const std::vector<Bytes>&
       actions.setpoint->rotor_speeds_rad_s.push_back(
           share * settings_.vehicle.airframe.max_rotor_speed_rad_s);
   }
-  actions.sent = std::exchange(sent_, {});
+  gimbal_.add_to(*actions.setpoint);
+  actions.sent = of_gimbal_.take();
+  std::ranges::move(std::exchange(sent_, {}), std::back_inserter(actions.sent));
   return actions;
+}
+
+std::vector<Bytes> ExternalController::point_gimbal(const std::vector<Bytes>& received) {
+  std::vector<Bytes> rest;
+  for (const Bytes& datagram : received) {
+    const auto frames = mavlink::Decoder().push_datagram(datagram);
+    bool is_taken = !frames.empty();
+    for (const mavlink::Frame& frame : frames) {
+      const mavlink::Message& m = frame.message;
+      const bool is_own = is_command(m) && gimbal_.takes(to_command(m)) &&
+                          is_one_of(m.integer("target_system"), {0, of_gimbal_.own().system}) &&
+                          is_one_of(m.integer("target_component"), {0, kAutopilot, kGimbal});
+      is_taken = is_taken && is_own;
+      if (!is_own) continue;
+      const Command command = to_command(m);
+      of_gimbal_.send(acknowledgement(command, gimbal_.run(command), frame.from));
+    }
+    if (!is_taken) rest.push_back(datagram);
+  }
+  return rest;
 }
 
 void ExternalController::serve_link() {

@@ -3,6 +3,8 @@
 #include "external/held_program.h"
 #include "external/ports.h"
 #include "external/readings.h"
+#include "mount.h"
+#include "outbox.h"
 #include "set_down.h"
 
 #include <cstdint>
@@ -65,9 +67,14 @@ class ExternalController : public FlightController {
 
  private:
   void take_datagram(Bytes datagram);
+  /// Leaves what the gimbal has not taken.
+  std::vector<Bytes> point_gimbal(const std::vector<Bytes>& received);
 
   std::uint8_t sequence_ = 0;
   std::vector<Bytes> sent_;
+  /// The vehicle's gimbal is a device of its own, beside the controller.
+  Mount gimbal_;
+  Outbox of_gimbal_;
   std::string version_;
   Duration booted_{0};
   SetDown set_down_;
