@@ -69,6 +69,38 @@ void for_each_collision(sim::World& world, const std::function<void(sim::Collisi
 
 using uav::Vec3;
 
+void for_each_colour(sim::Model& model, const std::function<void(Vec3&)>& change) {
+  for (sim::Link& link : model.links)
+    for (sim::Visual& visual : link.visuals) {
+      change(visual.material.diffuse_rgb);
+      change(visual.material.ambient_rgb);
+    }
+}
+
+void for_each_light(sim::World& world, const std::function<void(Vec3&)>& change) {
+  change(world.ambient_rgb);
+  for (sim::Light& light : world.lights) {
+    change(light.diffuse_rgb);
+    change(light.specular_rgb);
+  }
+}
+
+Vec3 grey_of(const Vec3& rgb) {
+  const double mean = (rgb.x + rgb.y + rgb.z) / 3.0;
+  return {mean, mean, mean};
+}
+
+Vec3 within_colours(const Vec3& rgb) {
+  return {std::clamp(rgb.x, 0.0, 1.0), std::clamp(rgb.y, 0.0, 1.0), std::clamp(rgb.z, 0.0, 1.0)};
+}
+
+/// About the axis of the greys: from red over green to blue.
+Vec3 turned_hue(const Vec3& rgb, double hue_deg) {
+  const double third = std::sqrt(1.0 / 3.0);
+  return within_colours(
+      rotate(uav::from_axis_angle({third, third, third}, rad_from_deg(hue_deg)), rgb));
+}
+
 constexpr std::array kQuantities = {
     Quantity{"start_x_m", Part::kUav, false, kMoveUav<&Vec3::x>},
     Quantity{"start_y_m", Part::kUav, false, kMoveUav<&Vec3::y>},
@@ -108,11 +140,17 @@ constexpr std::array kQuantities = {
              }},
     Quantity{"model_brightness_factor", Part::kModel, true,
              [](sim::World&, sim::Uav*, sim::Model* model, sim::Sensor*, double factor) {
-               for (sim::Link& link : model->links)
-                 for (sim::Visual& visual : link.visuals) {
-                   visual.material.diffuse_rgb = factor * visual.material.diffuse_rgb;
-                   visual.material.ambient_rgb = factor * visual.material.ambient_rgb;
-                 }
+               for_each_colour(*model, [&](Vec3& rgb) { rgb = factor * rgb; });
+             }},
+    Quantity{"model_hue_deg", Part::kModel, false,
+             [](sim::World&, sim::Uav*, sim::Model* model, sim::Sensor*, double hue_deg) {
+               for_each_colour(*model, [&](Vec3& rgb) { rgb = turned_hue(rgb, hue_deg); });
+             }},
+    Quantity{"model_saturation_factor", Part::kModel, true,
+             [](sim::World&, sim::Uav*, sim::Model* model, sim::Sensor*, double factor) {
+               for_each_colour(*model, [&](Vec3& rgb) {
+                 rgb = within_colours(grey_of(rgb) + factor * (rgb - grey_of(rgb)));
+               });
              }},
     Quantity{"path_delay_s", Part::kPath, false,
              [](sim::World&, sim::Uav*, sim::Model* model, sim::Sensor*, double delay_s) {
@@ -137,11 +175,12 @@ constexpr std::array kQuantities = {
              }},
     Quantity{"light_factor", Part::kWorld, true,
              [](sim::World& world, sim::Uav*, sim::Model*, sim::Sensor*, double factor) {
-               world.ambient_rgb = factor * world.ambient_rgb;
-               for (sim::Light& light : world.lights) {
-                 light.diffuse_rgb = factor * light.diffuse_rgb;
-                 light.specular_rgb = factor * light.specular_rgb;
-               }
+               for_each_light(world, [&](Vec3& rgb) { rgb = factor * rgb; });
+             }},
+    Quantity{"light_warmth_factor", Part::kWorld, true,
+             [](sim::World& world, sim::Uav*, sim::Model*, sim::Sensor*, double factor) {
+               const double red = std::sqrt(factor);
+               for_each_light(world, [&](Vec3& rgb) { rgb = {red * rgb.x, rgb.y, rgb.z / red}; });
              }},
     Quantity{"friction_factor", Part::kWorld, true,
              [](sim::World& world, sim::Uav*, sim::Model*, sim::Sensor*, double factor) {

@@ -169,6 +169,29 @@ TEST(Vary, LightAndFrictionAreThoseOfTheWholeWorld) {
   EXPECT_EQ(flown.models[2].links[0].collisions[0].friction, 1.0);
 }
 
+TEST(Vary, ColoursTurnFadeAndStayColours) {
+  const auto colour = [](const std::string& quantity, double value, const Vec3& before) {
+    sim::World flown = world();
+    flown.models[1].links[0].visuals[0].material.diffuse_rgb = before;
+    vary({of(quantity, "crate", OneOf{{value}})}, 1, false, flown);
+    return flown.models[1].links[0].visuals[0].material.diffuse_rgb;
+  };
+  const auto near = [](const Vec3& a, const Vec3& b) { return norm(a - b) < 1e-12; };
+  EXPECT_TRUE(near(colour("model_hue_deg", 120, {0.6, 0.1, 0.2}), {0.2, 0.6, 0.1}));
+  EXPECT_TRUE(near(colour("model_hue_deg", 360, {0.6, 0.1, 0.2}), {0.6, 0.1, 0.2}));
+  EXPECT_TRUE(near(colour("model_hue_deg", 60, {0.5, 0.5, 0.5}), {0.5, 0.5, 0.5})) << "a grey";
+  EXPECT_TRUE(near(colour("model_hue_deg", 60, {1, 0, 0}), {2.0 / 3.0, 2.0 / 3.0, 0}));
+  EXPECT_TRUE(near(colour("model_saturation_factor", 0.5, {0.6, 0.2, 0.1}), {0.45, 0.25, 0.2}));
+  EXPECT_TRUE(near(colour("model_saturation_factor", 9, {0.6, 0.2, 0.1}), {1, 0, 0}));
+}
+
+TEST(Vary, WarmLightIsRedder) {
+  sim::World flown = world();
+  vary({of("light_warmth_factor", "", OneOf{{4.0}})}, 1, false, flown);
+  EXPECT_EQ(flown.lights[0].diffuse_rgb, (Vec3{2.0, 1.0, 0.5}));
+  EXPECT_EQ(flown.ambient_rgb, (Vec3{0.8, 0.4, 0.2}));
+}
+
 TEST(Vary, MountingsChangeAfterTheProfiles) {
   const std::vector<Variation> all = {of("sensor_yaw_deg", "alpha.imu", OneOf{{10.0}})};
   sim::World flown = world();
