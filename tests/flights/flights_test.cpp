@@ -27,12 +27,14 @@ constexpr std::uint64_t kFlights = 1'000;
 constexpr std::uint32_t kImuQueue = 8;
 constexpr Duration kCameraPeriod = milliseconds(33);
 
-/// A world whose UAVs have a second camera.
+/// A world whose UAVs have a second camera, and a joint that turns it.
 sim::World make_world(std::size_t uavs) {
   sim::World world = sim::make_fake_world(uavs);
   for (sim::Uav& uav : world.uavs) {
     uav.sensors.push_back(uav.sensors[0]);
     uav.sensors.back().name = "right";
+    uav.sensors.back().joints = 1;
+    uav.joints = {{"pitch", {}, {0, 1, 0}, -1.0, 1.0, 2.0}};
   }
   return world;
 }
@@ -61,7 +63,13 @@ class Draws {
                                           uav::EmpiricalDelay{{Duration(0), mean, 3 * mean}}};
     return kinds[below(3)];
   }
-  /// Every mask that means something.
+  /// Of the joints alone, or with any other set-point.
+  uav::Setpoint joints(uav::Setpoint setpoint = {.mask = 0}) {
+    setpoint.mask |= uav::kJoints;
+    setpoint.joints_rad = {between(-1.0, 1.0)};
+    return setpoint;
+  }
+  /// Every mask of motion that means something.
   uav::Setpoint setpoint() {
     constexpr std::array<int, 6> kMotions{uav::kPosition,
                                           uav::kPosition | uav::kVelocity,
@@ -88,9 +96,12 @@ class Draws {
     return drawn;
   }
   std::vector<uav::TimedSetpoint> trajectory() {
+    if (below(8) == 0) return {{Duration(0), joints()}};
     std::vector<uav::TimedSetpoint> drawn{{Duration(0), setpoint()}};
     for (std::uint32_t more = coin() ? 0 : below(5); more > 0; --more)
       drawn.push_back({drawn.back().after + microseconds(1 + below(20'000)), setpoint()});
+    for (uav::TimedSetpoint& one : drawn)
+      if (below(4) == 0) one.setpoint = joints(std::move(one.setpoint));
     return drawn;
   }
 

@@ -91,6 +91,9 @@ with tether.connect(name="every_sensor") as vehicle:
     scan = lidar.read()
     assert scan.ranges_m.shape == (lidar.scan_model.rows, lidar.scan_model.columns) == (1, 90)
     seen["scan_m"] = scan.ranges_m.min()
+    # By the colours of the room, as it has no <laser_retro>.
+    assert scan.intensities.shape == (1, 90) and scan.intensities.dtype == np.float32
+    assert 0 < scan.intensities.min() < scan.intensities.max() <= 1
     range_m = vehicle.range().read().range_m
     assert 0.04 <= range_m <= 4 or range_m == math.inf, range_m
     seen["altitude_m"] = vehicle.barometer().read().altitude_m

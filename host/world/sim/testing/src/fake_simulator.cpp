@@ -88,7 +88,8 @@ World make_fake_world(std::size_t count, Duration step) {
   return world;
 }
 
-FakeSimulator::FakeSimulator(World world) : world_(std::move(world)), grid_(world_.step) {
+FakeSimulator::FakeSimulator(World world)
+    : world_(std::move(world)), grid_(world_.step), joints_(world_) {
   reset(0);
   calls_ = {};
 }
@@ -108,6 +109,7 @@ void FakeSimulator::reset(std::uint64_t seed) {
   applied_.clear();
   expected_.clear();
   bodies_.clear();
+  joints_.reset();
   for (const Uav& uav : world_.uavs) {
     bodies_.push_back({uav.X_WB.p, uav::yaw_rad(uav.X_WB.q), {}});
     if (uav.energy) bodies_.back().meter.emplace(*uav.energy, uav.airframe, world_.gravity_m_s2);
@@ -132,6 +134,7 @@ void FakeSimulator::step() {
     if (body.meter)
       body.meter->step(now_, grid_.dt(), {}, uav::hover_state(airframe, world_.gravity_m_s2, 0.0));
   }
+  joints_.step();
   now_ += grid_.dt();
   ++calls_.steps;
 }
@@ -155,6 +158,7 @@ void FakeSimulator::apply(std::size_t uav, const uav::Setpoint& setpoint) {
   check_uav(uav);
   if (setpoint.flies())
     bodies_[uav].command = heading_velocity(setpoint).value_or(uav::VelocityCommand{});
+  if (setpoint.has(uav::kJoints)) joints_.command(uav, setpoint.joints_rad);
   applied_.push_back({now_, uav, setpoint});
 }
 
@@ -204,11 +208,13 @@ uav::Sample FakeSimulator::measure(const Snapshot& snapshot, std::size_t uav, st
 GroundTruth FakeSimulator::ground_truth(std::size_t uav) const {
   check_uav(uav);
   const Body& body = bodies_[uav];
+  const auto joints_rad = joints_.angles_rad(uav);
   return {now_,
           {body.p_WB,
            q_from_yaw(body.yaw_rad),
            velocity_W(body.yaw_rad, body.command),
-           {0.0, 0.0, body.command.yaw_rate_rad_s}}};
+           {0.0, 0.0, body.command.yaw_rate_rad_s}},
+          {joints_rad.begin(), joints_rad.end()}};
 }
 
 void FakeSimulator::set_camera_kind(uav::CameraKind kind) {

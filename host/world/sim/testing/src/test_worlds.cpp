@@ -52,4 +52,16 @@ World test_world() {
   return world;
 }
 
+World world_with_battery(double charge, double resistance_ohm) {
+  World world = test_world();
+  energy::Model& model = world.uavs[0].energy.emplace();
+  model.propulsion = {.rotor_radius_m = 0.1, .efficiency = 0.7, .nominal_voltage_V = 11.1};
+  model.battery = {.capacity_C = 7560.0,
+                   .voltage_at_charge = {{0.0, 10.0}, {1.0, 12.6}},
+                   .resistance_ohm = resistance_ohm,
+                   .cut_off_V = 5.0,
+                   .initial_charge = charge};
+  return world;
+}
+
 }  // namespace tether::sim::testing

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include <tether/sim/joint_drives.h>
 #include <tether/sim/simulator.h>
 
 namespace tether::sim {
@@ -75,7 +76,7 @@ class FakeSimulator final : public Simulator {
   void reset(std::uint64_t seed) override;
   void advance_to(SimTime t) override;
   bool takes_setpoints() const override { return true; }
-  /// Only velocities in the heading frame move a UAV; it stands still otherwise.
+  /// Only velocities in the heading frame move a UAV; it stands still otherwise. Joints turn.
   void apply(std::size_t uav, const uav::Setpoint& setpoint) override;
   void capture(Snapshot& snapshot) const override;
   /// Camera: the bytes are a hash of (seed, instant, UAV, sensor, index), the first eight the
@@ -114,6 +115,7 @@ class FakeSimulator final : public Simulator {
   SimTime now_{};
   std::uint64_t seed_ = 0;
   std::vector<Body> bodies_;
+  JointDrives joints_;
   std::vector<AppliedCommand> applied_;
   std::vector<Expected> expected_;
   std::optional<std::vector<Contact>> planned_contacts_;

@@ -192,6 +192,65 @@ TEST_P(SimulatorContract, RaysEndAtTheNextObject) {
   EXPECT_NEAR(measure_now<uav::RangeSample>(*simulator, kRange).range_m, 4.9, 1e-6);
 }
 
+/// The image of a camera of that kind at the start of `test_world` with a wall 4.7 m ahead of it;
+/// none: the back end refuses such a camera, and says which.
+inline std::optional<uav::CameraSample> image_of_wall(const SimulatorMaker& make,
+                                                      uav::CameraKind kind) {
+  World world = test_world();
+  world.models.push_back(box_model("wall", {5.0, 0.0, 1.0}, {0.2, 6.0, 2.0}, {0.8, 0.2, 0.2}));
+  auto& camera = std::get<CameraModel>(world.uavs[0].sensors[kCamera].model);
+  camera.kind = kind;
+  camera.depth_min_m = 0.5;
+  camera.depth_max_m = 20.0;
+  try {
+    return measure_now<uav::CameraSample>(*make(std::move(world)), kCamera);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::kBadFile);
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("camera"));
+    return std::nullopt;
+  }
+}
+
+TEST_P(SimulatorContract, DepthsAndLabelsAreOfTheGeometryIfThereAreAny) {
+  const std::size_t centre = 60 * 160 + 80, below = 115 * 160 + 80;
+  const auto coloured = image_of_wall(GetParam(), uav::CameraKind::kColor);
+  for (const auto kind : {uav::CameraKind::kDepth, uav::CameraKind::kRgbd}) {
+    const auto image = image_of_wall(GetParam(), kind);
+    if (!image) continue;
+    ASSERT_EQ(image->depth_m.size(), 160U * 120U);
+    EXPECT_NEAR(image->depth_m[centre], 4.7, 1e-4);
+    EXPECT_LT(image->depth_m[below], 4.7);
+    EXPECT_EQ(image->rgb.empty(), kind == uav::CameraKind::kDepth);
+    if (kind == uav::CameraKind::kRgbd) {
+      EXPECT_EQ(image->rgb, coloured->rgb);
+    }
+  }
+  const auto labels = image_of_wall(GetParam(), uav::CameraKind::kSegmentation);
+  if (!labels) return;
+  ASSERT_EQ(labels->labels.size(), 160U * 120U);
+  EXPECT_EQ(labels->labels[centre], 2U) << "the second model";
+  EXPECT_EQ(labels->labels[below], 1U) << "the floor";
+}
+
+TEST_P(SimulatorContract, ABatteryIsSpentByTheFlightIfItIsSimulated) {
+  const auto left_after = [](bool climbs) -> std::optional<double> {
+    const auto simulator = make(world_with_battery(0.8, 0.05));
+    if (climbs) simulator->apply(0, uav::to_setpoint({{0.0, 0.0, 1.0}, 0.0}));
+    const auto before = simulator->battery(0);
+    simulator->advance_to(at(std::chrono::milliseconds(500)));
+    const auto after = simulator->battery(0);
+    EXPECT_EQ(before.has_value(), after.has_value());
+    if (!after) return std::nullopt;
+    EXPECT_EQ(before->charge, 0.8);
+    EXPECT_LT(after->charge, 0.8);
+    EXPECT_GT(after->current_A, 0.0);
+    return after->charge;
+  };
+  const auto hovering = left_after(false), climbing = left_after(true);
+  if (!hovering) GTEST_SKIP() << "simulates no batteries";
+  EXPECT_LT(*climbing, *hovering);
+}
+
 // Without noise, each says what the ground truth says.
 TEST_P(SimulatorContract, NavigationSensorsMeasureTheGroundTruth) {
   World world = test_world();

@@ -25,6 +25,8 @@ Uav test_uav(const std::string& name, const uav::Vec3& p_WB);
 
 /// A lit floor at z = 0 with "alpha" hovering at (0, 0, 1).
 World test_world();
+/// The same with a battery of three cells, 12.6 V when it is full.
+World world_with_battery(double charge, double resistance_ohm);
 
 /// Measures a sensor of UAV 0 now; `S` is its sample type.
 template <class S>
