@@ -189,7 +189,7 @@ class Sensor(Generic[T]):
 
     def set_queue(self, depth: int) -> None:
         """Lets up to `depth` measurements of a periodic sensor wait, 1 to 4096; reads then get the oldest."""
-        check(lib.tether_set_queue(self._vehicle._handle, self._name, depth))
+        check(lib.tether_set_queue(self._vehicle._handle, self._name, min(max(depth, 0), 2**32 - 1)))
 
 
 _READS: dict[Kind, tuple[str, type[Any]]] = {

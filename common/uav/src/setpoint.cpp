@@ -123,7 +123,10 @@ std::string complaint_about(const Setpoint& setpoint) {
   std::string wrong;
   each_field(setpoint, [&](SetpointField field, const auto& value, double most, const char* name) {
     if (wrong.empty() && setpoint.has(field) && !(largest(value) <= most))
-      wrong.append("the ").append(name).append(" is not finite, or above ").append(number(most));
+      wrong.append("the ")
+          .append(name)
+          .append(" must be finite, and at most ")
+          .append(number(most));
   });
   if (!wrong.empty()) return wrong;
   if (setpoint.in_heading && level == SetpointLevel::kPosition)

@@ -46,6 +46,8 @@ const std::map<std::string, NumericType, std::less<>> kNumericTypes = {
     {"pose", {6, 6, false, "six numbers"}},
 };
 constexpr NumericType kQuaternionPose{7, 7, false, "seven numbers"};
+/// Of a quaternion's length from 1: rounded ones are normalised.
+constexpr double kRounded = 0.01;
 
 /// What SDF declares of the child `name`; null where it does not know one.
 sdf::ElementPtr child_description(const sdf::ElementPtr& parent, const std::string& name) {
@@ -99,6 +101,11 @@ bool is_complete(const NumericType& type, const std::string& text) {
   if (type.is_integer && type.most == 1 && is_hexadecimal(text)) return true;
   const auto numbers = parse_numbers(text);
   if (!numbers || numbers->size() < type.least || numbers->size() > type.most) return false;
+  if (&type == &kQuaternionPose) {
+    const auto* q = numbers->data() + 3;
+    const double length = std::hypot(std::hypot(q[0], q[1]), std::hypot(q[2], q[3]));
+    if (std::abs(length - 1.0) > kRounded) return false;
+  }
   return !type.is_integer ||
          std::ranges::all_of(*numbers, [](double number) { return std::trunc(number) == number; });
 }
@@ -118,7 +125,8 @@ std::string describe_xml(const XMLElement& xml) {
 /// The end of a message: what the text of `xml` must be.
 std::string allowed_text(const XMLElement& xml, const NumericType& type) {
   if (std::string_view(xml.Name()) == "pose") {
-    if (is_quaternion(xml)) return "seven numbers, metres and a quaternion x y z w, without unit";
+    if (is_quaternion(xml))
+      return "seven numbers, metres and a unit quaternion x y z w, without unit";
     return std::string("six numbers, metres and ") +
            (xml.BoolAttribute("degrees") ? "degrees" : "radians") + ", without unit";
   }

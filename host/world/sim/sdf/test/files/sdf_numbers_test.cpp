@@ -24,7 +24,7 @@ TEST(CheckNumbers, AcceptsEveryWayOfWritingANumber) {
       <model name='m'>
         <pose relative_to='world'/>
         <link name='l'>
-          <pose rotation_format='quat_xyzw'>0 0 1 0 0 0 1</pose>
+          <pose rotation_format='quat_xyzw'>0 0 1 0 0 .707 .707</pose>
           <inertial><mass> +1e0 <!-- kilograms --> </mass></inertial>
           <visual name='v'><pose degrees='true'>0 0 1
             0 0 90</pose><geometry><box><size>1. .5 1E-1</size></box></geometry>
