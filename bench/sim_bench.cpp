@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include <benchmark/benchmark.h>
@@ -29,12 +30,16 @@ void print_warning(const Warning& warning) {
   std::fprintf(stderr, "%s\n", to_line(warning).c_str());
 }
 
-World corridor() {
+World load(const std::string& world) {
   const std::filesystem::path root = TETHER_SOURCE_DIR;
   WorldRequest request;
-  request.world = root / "data/worlds/corridor.sdf";
+  request.world = root / "data/worlds" / (world + ".sdf");
   request.uavs = {{"alpha", root / "data/models/hummingbird/model.sdf", {0.0, 0.0, 1.2}, 0.0}};
   return load_world(request, print_warning);
+}
+
+World corridor() {
+  return load("corridor");
 }
 
 std::size_t camera_of(const World& world) {
@@ -90,9 +95,8 @@ class Instructions {
   }
 };
 
-// Scans of a 2D lidar along a flight down the corridor; the yardstick is the engine's rays alone.
-World corridor_with_lidar() {
-  World world = corridor();
+// Scans of a 2D lidar along a flight; the yardstick is the engine's rays alone.
+World with_lidar(World world) {
   ScanModel scan{{.columns = 1080,
                   .rows = 1,
                   .min_azimuth_rad = -2.356,
@@ -106,8 +110,8 @@ World corridor_with_lidar() {
   return world;
 }
 
-void BM_scans_1080(benchmark::State& state) {
-  const World world = corridor_with_lidar();
+void BM_scans_1080(benchmark::State& state, const char* name) {
+  const World world = with_lidar(load(name));
   const std::size_t lidar = world.uavs[0].sensors.size() - 1;
   const auto simulator = make_mujoco_simulator(world, print_warning);
   simulator->apply(0, uav::to_setpoint({{0.5, 0.0, 0.0}, 0.1}));
@@ -123,7 +127,12 @@ void BM_scans_1080(benchmark::State& state) {
   }
   count_items(state, "scans", 1.0);
 }
-BENCHMARK(BM_scans_1080);
+BENCHMARK_CAPTURE(BM_scans_1080, bays, "bays");
+BENCHMARK_CAPTURE(BM_scans_1080, corridor, "corridor");
+BENCHMARK_CAPTURE(BM_scans_1080, gates, "gates");
+BENCHMARK_CAPTURE(BM_scans_1080, pillars, "pillars");
+BENCHMARK_CAPTURE(BM_scans_1080, room, "room");
+BENCHMARK_CAPTURE(BM_scans_1080, yard, "yard");
 
 void BM_rays_engine_alone_1080(benchmark::State& state) {
   const World world = corridor();
