@@ -36,6 +36,10 @@ void compute_block(std::vector<std::uint64_t>& words) {
   words[0] += static_cast<std::uint64_t>(sum) & 1u;
 }
 
+constexpr std::size_t kEnoughBlocks = 5;  // of a run, for a median
+// Two blocks so often take 1 % of a core.
+constexpr Duration kBetweenBlocks = std::chrono::milliseconds(200);
+
 std::vector<Duration> times_of_blocks(const MachineReader& reader) {
   reader.time_block();  // the first one fills the caches
   std::vector<Duration> times(kBlocks);
@@ -67,6 +71,13 @@ MachineWatch::MachineWatch(MachineReader reader)
       processors_(reader_.processors()),
       own_(reader_.own()) {}
 
+void MachineWatch::during_run(WallTime now) {
+  if (now - last_ < kBetweenBlocks) return;
+  last_ = now;
+  reader_.time_block();
+  during_.push_back(reader_.time_block());
+}
+
 void MachineWatch::end_of_run() {
   const auto now = reader_.processors();
   const Duration own = reader_.own() - own_;
@@ -78,10 +89,14 @@ void MachineWatch::end_of_run() {
 
 campaign::MachineLoad MachineWatch::load(bool knows_programs) {
   const std::vector<Duration> after = times_of_blocks(reader_);
-  const Duration shortest = std::min(before_.front(), after.front());
-  const Duration longest = std::max(median(before_), median(after));
+  std::ranges::sort(during_);
+  // Of a short run, little more is known than what was before and after it.
+  const bool knows_run = during_.size() >= kEnoughBlocks;
+  const Duration usual = knows_run ? median(during_) : std::max(median(before_), median(after));
+  Duration shortest = std::min(before_.front(), after.front());
+  if (knows_run) shortest = std::min(shortest, during_.front());
   return {.machine = kHost,
-          .block_spread = to_seconds(longest) / to_seconds(std::max(shortest, Duration(1))) - 1.0,
+          .block_spread = to_seconds(usual) / to_seconds(std::max(shortest, Duration(1))) - 1.0,
           .others = knows_programs ? others_ : 0.0};
 }
 
@@ -106,11 +121,12 @@ std::optional<campaign::MachineLoad> load_of_board(const campaign::TargetReport&
   return campaign::MachineLoad{.machine = target.name, .block_spread = 0.0, .others = *share};
 }
 
-std::optional<campaign::Doubt> doubt_of(const campaign::MachineLoad& load) {
-  if (load.block_spread <= kUneven && load.others <= kBusy) return std::nullopt;
+std::optional<campaign::Doubt> doubt_of(const campaign::MachineLoad& load, bool counts_turns) {
+  const double others = counts_turns ? load.others : 0.0;
+  if (load.block_spread <= kUneven && others <= kBusy) return std::nullopt;
   return campaign::Doubt{campaign::Doubt::Kind::kBusyMachine,
                          load.machine == kHost ? "" : load.machine,
-                         std::max(load.block_spread, load.others)};
+                         std::max(load.block_spread, others)};
 }
 
 }  // namespace tether::runner

@@ -19,12 +19,15 @@ struct MachineReader {
 /// Of this machine. `clock`: in whose time a block is measured.
 MachineReader machine_reader(clockid_t clock);
 
-/// Watches how busy this machine is during a run, from the outside: what it measures before and
-/// after the run takes 50 ms, and it takes nothing in between. Not thread-safe.
+/// Watches how busy this machine is during a run, from the outside: a fixed block of work is timed
+/// before and after the run, which takes 50 ms, and now and then during it, which takes 1 % of a
+/// core. Not thread-safe.
 class MachineWatch {
  public:
   /// Before the SUTs are started. Measures.
   explicit MachineWatch(MachineReader reader);
+  /// During the run, as often as one likes. Measures if it is time.
+  void during_run(WallTime now);
   /// At the end of the run, while its processes still exist.
   void end_of_run();
   /// After they have ended. Measures. `knows_programs`: false if the user started programs of the
@@ -33,7 +36,8 @@ class MachineWatch {
 
  private:
   MachineReader reader_;
-  std::vector<Duration> before_;
+  std::vector<Duration> before_, during_;
+  WallTime last_{};
   std::optional<os::ProcessorTime> processors_;
   Duration own_{0};
   double others_ = 0.0;
@@ -48,7 +52,8 @@ campaign::TargetReport report_of(const record::TargetInfo& info, const record::R
 /// Of a board, from its readings. None: this is the host, or the board does not tell.
 std::optional<campaign::MachineLoad> load_of_board(const campaign::TargetReport& target);
 
-/// None: the machine was idle and even enough.
-std::optional<campaign::Doubt> doubt_of(const campaign::MachineLoad& load);
+/// None: the machine was idle and even enough for times of that kind.
+/// @param counts_turns whether the times contain what other programs took: those of a wall clock do
+std::optional<campaign::Doubt> doubt_of(const campaign::MachineLoad& load, bool counts_turns);
 
 }  // namespace tether::runner

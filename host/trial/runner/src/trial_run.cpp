@@ -314,7 +314,8 @@ TrialRun::TrialRun(const TrialSpec& spec, const TrialInputs& inputs, RunningSimu
 
 Conducted TrialRun::conduct() {
   std::optional<MachineWatch> machine;
-  if (const auto clock = measuring_clock(spec_)) machine.emplace(machine_reader(*clock));
+  const auto clock = measuring_clock(spec_);
+  if (clock) machine.emplace(machine_reader(*clock));
   if (!spec_.waits_for_sut) suts_.start(spec_.scenario, sut_run_, spec_.folder, boards_.by_uav);
   warm_up_cameras(simulator_.get());
   if (spec_.has_sut_at(SutPlace::kUnknown) && observer_.on_listening)
@@ -326,7 +327,8 @@ Conducted TrialRun::conduct() {
   std::vector<campaign::MachineLoad> loads;
   if (machine) {
     loads.push_back(machine->load(starts_all_programs(spec_)));
-    if (auto doubt = doubt_of(loads.back())) doubted.push_back(std::move(*doubt));
+    if (auto doubt = doubt_of(loads.back(), *clock == CLOCK_MONOTONIC))
+      doubted.push_back(std::move(*doubt));
   }
   return {std::move(end.report), memory_.take(), std::move(notes_), std::move(doubted),
           std::move(loads),      target_,        target_after_,     std::move(others_)};
@@ -342,7 +344,10 @@ TrialEnd TrialRun::fly(std::optional<MachineWatch>& machine) {
     end.cause = stop->cause;
     return to_run_end(*stop);
   };
-  hooks.on_status = [&](const coordinator::RunStatus& status) { watch(status, stalls); };
+  hooks.on_status = [&](const coordinator::RunStatus& status) {
+    watch(status, stalls);
+    if (machine) machine->during_run(host_now());
+  };
   hooks.on_refused = [&](const std::string& address, const std::string& reason) {
     refusals_.add(address, reason, !spec_.waits_for_sut && !have_all_joined_);
   };

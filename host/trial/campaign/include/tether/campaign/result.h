@@ -153,7 +153,7 @@ using timing::Doubt;
 /// How far a machine on which execution time was measured was from idle and even during a run.
 struct MachineLoad {
   std::string machine;        ///< "host", or the name of a board
-  double block_spread = 0.0;  ///< of a fixed block of work: longest over shortest time, less 1
+  double block_spread = 0.0;  ///< of a fixed block of work: usual over shortest time, less 1
   double others = 0.0;  ///< share of its processors' time that other programs and other virtual
                         ///< machines took; 0 also if the user started programs of the run. Of a
                         ///< board: share of the run for which programs waited for a processor
