@@ -163,6 +163,8 @@ std::string sentence_of(const Advice& advice, const Verdict& verdict) {
       return "Cool the board, or give it enough power (`tether target check`), and fly again.";
     case Kind::kSpeedUpStage:
       return stage_advice(advice, lead);
+    case Kind::kMendProgram:
+      return "If the program was not meant to end so, fix it and fly again.";
     case Kind::kTryFaster:
       return faster_advice(lead);
     case Kind::kFindReason:

@@ -127,6 +127,10 @@ void count(ConditionVerdict& verdict, const campaign::TrialResult& trial) {
   if (trial.outcome == campaign::Outcome::kGoalReached) ++verdict.reached;
   if (missed_for_no_value(trial) != nullptr) ++verdict.without_value;
   if (has_crash(trial)) ++verdict.crashed;
+  if (std::ranges::any_of(trial.suts, [](const campaign::SutResult& sut) {
+        return sut.as_is && sut.finished && !sut.reached_goal;
+      }))
+    ++verdict.gave_up;
   if (trial.this_run.target && trial.this_run.target->is_spoiled) ++verdict.throttled;
   std::optional<std::pair<std::string, double>> worst;
   const auto compare = [&](const std::string& label, std::optional<double> margin) {
@@ -294,8 +298,10 @@ std::vector<Advice> advice_on(const ConditionVerdict& lead) {
         advice.push_back({Kind::kFindReason});
       else if (lead.miss->reached > 0)
         advice.push_back({Kind::kCompareMore, lead.condition});
-      else
+      else {
+        if (lead.gave_up > 0) advice.push_back({Kind::kMendProgram});
         advice.push_back({Kind::kTryFaster, lead.condition});
+      }
       break;
     case Ruling::kOtherReason:
       advice.push_back({Kind::kFindReason, lead.miss->condition});

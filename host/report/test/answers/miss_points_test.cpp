@@ -48,5 +48,20 @@ TEST_F(MissReasons, CountTheOwnGoalOfEachProgram) {
                              HasSubstr("but meets the own goal of uav2's program.")));
 }
 
+// An exit code can mean that the goal was missed, or that the program crashed.
+TEST_F(MissReasons, OfAProgramAsItIsCanBeItsOwnFailure) {
+  const std::size_t board = add("board", 0, 5, measured(0.2));
+  EXPECT_EQ(verdict().advice.size(), 1u);
+  for (campaign::TrialResult& trial : trials(board)) {
+    campaign::SutResult sut;
+    sut.as_is = sut.finished = true;
+    trial.suts = {sut};
+  }
+  const std::vector<Advice> advice = verdict().advice;
+  ASSERT_EQ(advice.size(), 2u);
+  EXPECT_EQ(advice[0].kind, Advice::Kind::kMendProgram);
+  EXPECT_EQ(advice[1].kind, Advice::Kind::kTryFaster);
+}
+
 }  // namespace
 }  // namespace tether::report

@@ -66,7 +66,9 @@ std::string refusal_of(const record::Record& record, const std::string& uav) {
 /// A program with a flight controller: whether it did anything and, if it says that it has flown,
 /// whether it can have done so.
 /// Doubts go to `warnings`.
-void check_companion(const record::Record& record, SutResult& sut, std::vector<Warning>& warnings) {
+/// @return why it says nothing about its computer; empty: it does
+std::string check_companion(const record::Record& record, SutResult& sut,
+                            std::vector<Warning>& warnings) {
   constexpr double kAway_m = 0.2;
   constexpr double kHardlyTurned = 0.9962;  // cosine of 5 degrees, half the angle
   const auto is_sent = [&](const auto& logged) {
@@ -84,16 +86,18 @@ void check_companion(const record::Record& record, SutResult& sut, std::vector<W
   };
   const bool has_sent = std::ranges::any_of(record.autopilot, is_sent);
   if (!has_sent && std::ranges::none_of(record.interactions, is_call)) {
-    doubt("has a program that did nothing with it: no sensor was read, and nothing sent");
-    if (sut.reached_goal) sut.outcome += ", but it did nothing with its UAV";
     sut.reached_goal = false;
-    return;
+    if (sut.finished)
+      return fmt::format("the program of UAV '{}' ended before it did anything with it: {}",
+                         sut.uav, sut.outcome);
+    doubt("has a program that did nothing with it: no sensor was read, and nothing sent");
+    return "";
   }
   if (!sut.reached_goal)
     if (const std::string said = refusal_of(record, sut.uav); !said.empty())
       sut.outcome +=
           fmt::format("{}the flight controller said: {}", sut.outcome.empty() ? "" : "; ", said);
-  if (!sut.reached_goal && sut.finished) return;
+  if (!sut.reached_goal && sut.finished) return "";
   const record::GroundTruth *first = nullptr, *last = nullptr;
   bool has_moved = false, has_turned = false;
   for (const auto& logged : record.ground_truth) {
@@ -108,23 +112,27 @@ void check_companion(const record::Record& record, SutResult& sut, std::vector<W
                                              std::begin(first->q_WB), 0.0);  // of half the angle
     has_turned |= std::abs(cosine) < kHardlyTurned;
   }
-  if (!has_sent) return doubt("has a flight controller to which its program sent no message");
+  if (!has_sent) {
+    doubt("has a flight controller to which its program sent no message");
+    return "";
+  }
   const bool began_in_air = first != nullptr && first->clearance_m && *first->clearance_m > kAway_m;
   if (!has_moved && !(began_in_air && has_turned))
     doubt(sut.reached_goal
               ? "never left its start, although its program says that it reached its goal"
               : "never left its start");
-  if (!sut.reached_goal) return;
-  if (!began_in_air && last != nullptr && last->clearance_m && *last->clearance_m > kAway_m)
+  if (sut.reached_goal && !began_in_air && last != nullptr && last->clearance_m &&
+      *last->clearance_m > kAway_m)
     doubt(
         fmt::format("is in the air ({:.3g} m from anything) when its program ends: what follows "
                     "was not flown",
                     *last->clearance_m));
+  return "";
 }
 
 std::vector<SutResult> sut_results(const record::Record& record,
                                    const std::vector<TaskEnd>& task_ends,
-                                   std::vector<Warning>& warnings) {
+                                   std::vector<Warning>& warnings, std::string& never_began) {
   std::vector<SutResult> suts;
   for (const record::SutInfo& info : record.header.suts) {
     SutResult sut{.uav = info.uav, .sut = info.sut, .clock = info.clock, .as_is = info.as_is};
@@ -140,7 +148,9 @@ std::vector<SutResult> sut_results(const record::Record& record,
       sut.outcome = end.outcome;
       sut.details = end.details;
     }
-    if (info.controller) check_companion(record, sut, warnings);
+    if (info.controller)
+      if (const std::string why = check_companion(record, sut, warnings); never_began.empty())
+        never_began = why;
     suts.push_back(std::move(sut));
   }
   return suts;
@@ -270,7 +280,8 @@ TrialResult make_result(const scenario::Scenario& scenario, const scenario::Cond
                         const record::Record& record, const std::vector<TaskEnd>& task_ends) {
   TrialResult result = result_of(scenario, condition, record.header.seed);
   result.metrics = compute_metrics(scenario.metrics, record);
-  result.suts = sut_results(record, task_ends, result.warnings);
+  std::string never_began;
+  result.suts = sut_results(record, task_ends, result.warnings, never_began);
   result.replay = replay_of(record);
   drop_metrics_of_missed_tasks(result, scenario);
   judge_missions(result, scenario, record);
@@ -291,14 +302,15 @@ TrialResult make_result(const scenario::Scenario& scenario, const scenario::Cond
     return result;
   }
   const record::Footer& footer = *record.footer;
-  result.end = end_of(footer);
+  result.end = never_began.empty() ? end_of(footer) : std::string(kEndSetupFailed);
   result.sync = {footer.interactions, footer.causality_violations, footer.largest_grid_error,
                  footer.st_at_end, stop_figures(record)};
   result.this_run.wall = footer.wall;
   result.this_run.largest_lag = footer.largest_lag;
   const double max_speed_m_s = scenario.max_contact_speed_m_s;
   result.contacts = contacts_of(record, max_speed_m_s);
-  settle(result, footer.reason, why_crashed(record, max_speed_m_s));
+  settle(result, never_began.empty() ? footer.reason : never_began,
+         why_crashed(record, max_speed_m_s));
   return result;
 }
 

@@ -289,14 +289,16 @@ TEST_F(MakeResult, ACompanionHasFlownOnlyIfItHasSentSomething) {
   record::Record record = finished_record();
   record.header.suts[0].controller.emplace().name = "built-in";
   TrialResult result = make(record, kReached);
-  EXPECT_EQ(result.outcome, Outcome::kGoalMissed);
-  EXPECT_THAT(result.reason, HasSubstr("it did nothing with its UAV"));
+  EXPECT_EQ(result.outcome, Outcome::kFailed) << "it says nothing about its computer";
+  EXPECT_EQ(result.end, kEndSetupFailed);
+  EXPECT_EQ(result.reason,
+            "the program of UAV 'uav1' ended before it did anything with it: in the middle");
   record::Interaction& read = record.interactions.emplace_back().message;
   read.uav = "uav1";
   for (const std::string_view waits : {record::kSleep, record::kReceive}) {
     read.kind = waits;
-    result = make(record, kReached);
-    EXPECT_EQ(result.outcome, Outcome::kGoalMissed) << "it only waited";
+    EXPECT_EQ(make(record, kReached).outcome, Outcome::kFailed) << "it only waited";
+    result = make(record, {});
   }
   EXPECT_THAT(to_line(result.warnings.at(0)), HasSubstr("did nothing with it"));
   read.kind = record::kSensor;

@@ -111,7 +111,8 @@ campaign::TrialResult evaluate(const TrialSpec& spec, const Conducted& conducted
                             "has those before the error",
                             report.reason, to_seconds(verdict.reached), verdict.interactions));
   } else if (result.outcome == campaign::Outcome::kFailed) {
-    campaign::invalidate(result, report.reason);
+    // Of one that was cut, the report knows more than the record.
+    if (report.end != RunEnd::kFinished) campaign::invalidate(result, report.reason);
   } else if (!verdict.passed()) {
     campaign::invalidate(result, "the record breaks the rules of time: " + result.audit->summary);
   }

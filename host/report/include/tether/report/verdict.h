@@ -136,7 +136,8 @@ struct ConditionVerdict {
   std::optional<campaign::Sizing> sizing{};
   // As far as the first flight says:
   bool is_on_real_board = false;
-  bool has_as_is = false;  ///< a program that does not use Tether's library
+  bool has_as_is = false;   ///< a program that does not use Tether's library
+  std::size_t gave_up = 0;  ///< flights in which such a program ended with a failure
 
   /// All that has flown is one flight: the only one, or one that was flown several times.
   bool is_one_flight() const { return distinct == 1 && (planned == 1 || flown > 1); }
@@ -168,6 +169,7 @@ struct Advice {
     kCoolBoard,      ///< subject: the condition
     kSpeedUpStage,   ///< subject: the stage
     kTryFaster,      ///< is it the computer? subject: the condition
+    kMendProgram,    ///< it ended with a failure of its own
     kFindReason,     ///< it is not the computer; subject: the condition to compare, or empty
     kQuietMachine,   ///< it was busy
     kVarySeeds,      ///< all flights are one
