@@ -32,6 +32,20 @@ class Calls {
         own_.push_back(&i);
     }
     std::ranges::stable_sort(own_, {}, [&](const Interaction* i) { return times_.sent(*i); });
+    for (const auto& logged : record.autopilot) {
+      const record::AutopilotMessage& m = logged.message;
+      if (m.uav == uav && m.is_setpoint() && m.sent_at >= span.from && m.sent_at <= span.to)
+        setpoints_.push_back(m.sent_at);
+    }
+    std::ranges::sort(setpoints_);
+  }
+
+  /// When the SUT commanded its UAV, by the library or by MAVLink.
+  std::vector<SimTime> commands() const {
+    std::vector<SimTime> at = setpoints_;
+    for (const Interaction* i : of_kind(record::kCommand)) at.push_back(times_.sent(*i));
+    std::ranges::sort(at);
+    return at;
   }
 
   std::vector<const Interaction*> of_kind(std::string_view kind) const {
@@ -70,6 +84,7 @@ class Calls {
   Times times_;
   std::set<std::string> cameras_;
   std::vector<const Interaction*> own_;
+  std::vector<SimTime> setpoints_;  ///< by MAVLink
 };
 
 /// Calls `take` with each command and the newest of `samples` that the SUT had when it sent it.
@@ -116,8 +131,9 @@ std::vector<Event> data_ages(const Calls& calls, const std::string& sensor) {
 
 std::vector<Event> loop_periods(const Calls& calls, const std::string& sensor) {
   std::vector<SimTime> rounds;
-  for (const Interaction* i : calls.of_kind(sensor.empty() ? record::kCommand : record::kSensor))
-    if (sensor.empty() || i->sensor == sensor) rounds.push_back(calls.times().sent(*i));
+  if (sensor.empty()) rounds = calls.commands();
+  for (const Interaction* i : calls.of_kind(record::kSensor))
+    if (i->sensor == sensor) rounds.push_back(calls.times().sent(*i));
   std::vector<Event> events;
   for (std::size_t i = 1; i < rounds.size(); ++i)
     events.push_back({rounds[i], to_seconds(rounds[i] - rounds[i - 1]), {}});

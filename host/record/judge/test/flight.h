@@ -54,6 +54,15 @@ class Flight {
     read.sampled_at = st(sampled_s);
     return *this;
   }
+  /// By MAVLink.
+  Flight& setpoint(double sent_s) {
+    record::AutopilotMessage& sent = record_.autopilot.emplace_back().message;
+    sent.uav = "uav1";
+    sent.to_controller = true;
+    sent.name = "SET_ATTITUDE_TARGET";
+    sent.sent_at = st(sent_s);
+    return *this;
+  }
   Flight& command(double sent_s, double effect_s) {
     add(record::kCommand, sent_s, sent_s).effect_at = st(effect_s);
     return *this;

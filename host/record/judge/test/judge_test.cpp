@@ -211,6 +211,8 @@ TEST(Judge, ReactionsAgesAndLoops) {
   EXPECT_NEAR(times.quantiles[10], 500.0, 1e-9);
   EXPECT_NEAR(times.quantiles[20], 1000.0, 1e-9);
   EXPECT_EQ(times.limit, 600.0);
+  flight.setpoint(5.6).setpoint(5.8);
+  expect(flight, {R"(always = "loop_period <= 300 ms in 40 %")", true, 100.0, 8.0, "200 ms"});
   const ClauseVerdict none = flight.verdict(R"(always = "reaction_time of nose <= 1 s")");
   EXPECT_TRUE(none.quantiles.empty());
   EXPECT_EQ(none.limit, 1.0);

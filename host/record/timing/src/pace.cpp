@@ -116,6 +116,19 @@ std::map<std::string, Intervals> intervals_of(const record::Record& record, cons
   return cameras;
 }
 
+double setpoint_rate(const record::Record& record, const std::string& uav) {
+  std::vector<double> between_s;
+  std::optional<SimTime> previous;
+  for (const auto& logged : record.autopilot) {
+    const record::AutopilotMessage& m = logged.message;
+    if (m.uav != uav || !m.is_setpoint()) continue;
+    if (previous) between_s.push_back(to_seconds(m.sent_at - *previous));
+    previous = m.sent_at;
+  }
+  const double median_s = between_s.empty() ? 0.0 : quantile(between_s, 0.5);
+  return median_s > 0.0 ? 1.0 / median_s : 0.0;
+}
+
 Pace pace_of(const record::Record& record, const record::SutInfo& sut) {
   Timing timing;
   timing.runs = {run_of(record, sut)};
@@ -149,6 +162,7 @@ Pace pace_of(const record::Record& record, const record::SutInfo& sut) {
         std::accumulate(intervals.between_s.begin(), intervals.between_s.end(), 0.0);
     pace.behind = all_s > 0.0 ? intervals.behind_s / all_s : 0.0;
   }
+  pace.setpoint_hz = setpoint_rate(record, sut.uav);
   return pace;
 }
 

@@ -55,6 +55,20 @@ TEST(Pace, IsThatOfTheImages) {
   EXPECT_EQ(pace.stages.front().stage, "detect");
 }
 
+TEST(Pace, HasTheRateOfSetpoints) {
+  record::Record record = record_of_reads();
+  EXPECT_EQ(pace_of(record)->setpoint_hz, 0.0);
+  for (const int at_ms : {0, 10, 40, 90, 140, 1000}) {
+    record::AutopilotMessage& sent = record.autopilot.emplace_back().message;
+    sent.uav = at_ms == 10 ? "uav2" : "uav1";
+    sent.to_controller = true;
+    sent.name = at_ms == 40 ? "SET_ATTITUDE_TARGET" : "SET_POSITION_TARGET_LOCAL_NED";
+    sent.sent_at = SimTime(milliseconds(at_ms));
+  }
+  record.autopilot.emplace_back(record.autopilot.back()).message.name = "HEARTBEAT";
+  EXPECT_NEAR(pace_of(record)->setpoint_hz, 20.0, 1e-9);
+}
+
 TEST(Pace, ContainsWhatWasComputedWhenTheRunEnded) {
   record::Record record = record_of_reads();
   const ExecTime last = record.interactions.back().message.reply_at;

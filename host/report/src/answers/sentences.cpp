@@ -44,6 +44,9 @@ std::string pace_text(const Pace& pace) {
           "programs share",
           short_ms(pace.median_s), pace.shared_board, share_text(pace.waiting), pace.programs);
   }
+  if (pace.setpoint_hz > 0.0)
+    text += fmt::format("{}set-points are sent {} times a second", text.empty() ? "" : ", ",
+                        rate_text(pace.setpoint_hz));
   if (!pace.stages.empty())
     text += fmt::format("{}“{}” takes {} of the computing time", text.empty() ? "" : ", and ",
                         pace.stages.front().stage, share_text(pace.stages.front().share));

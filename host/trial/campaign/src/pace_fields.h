@@ -98,6 +98,7 @@ void fields(auto& io, Maybe<timing::Pace> auto& m) {
     io("waiting", m.waiting);
     if (io.has("behind", m.behind > 0.0)) io("behind", m.behind);
   }
+  if (io.has("setpoint_hz", m.setpoint_hz > 0.0)) io("setpoint_hz", m.setpoint_hz);
   io("shares_real_board", m.shares_real_board);
   if (io.has("shared_board", !m.shared_board.empty())) {
     io("shared_board", m.shared_board);

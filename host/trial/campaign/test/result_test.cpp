@@ -135,6 +135,7 @@ TEST_F(Result, ReadsBackWithEveryOptionalPart) {
                              .radio = "radio=ideal",
                              .messages = 7,
                              .messages_arrived = 6};
+  trial_.pace->setpoint_hz = 12.5;
   trial_.pace->speed = {.programs = {{.uav = "uav1",
                                       .clock = trial_.clock,
                                       .replay = record::ReplayInfo{"t", "exact", "now", "pi", "0a"},

@@ -268,6 +268,11 @@ struct AutopilotMessage {
   std::string fields;  ///< its values: a JSON object, which is written as it is; empty: none
 
   std::string_view direction() const { return to_controller ? "to" : "from"; }
+  /// Whether it is a command of what to fly now.
+  bool is_setpoint() const {
+    return to_controller &&
+           (name.starts_with("SET_POSITION_TARGET_") || name == "SET_ATTITUDE_TARGET");
+  }
 };
 
 /// A message of the SUT for the record. Topic /task/<uav>; log time = ST when it arrived.

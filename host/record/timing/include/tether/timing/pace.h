@@ -94,6 +94,9 @@ struct Pace {
   /// Of a fleet with several computers; empty: of no such fleet, or not known.
   std::vector<BoardPace> boards{};
 
+  /// Set-points that the program sent by MAVLink, one over the median time between two; 0: none.
+  double setpoint_hz = 0.0;
+
   Speed speed{};             ///< of all programs of the run
   std::string radio{};       ///< its settings, to compare them; empty: there is none
   std::size_t messages = 0;  ///< of all programs, once for each receiver
