@@ -32,6 +32,12 @@ constexpr const char* kModel = "hummingbird";
 constexpr const char* kProfile = "paper_streaming";
 /// Above the ground, where a flight controller sets it down. Of another UAV, little is known.
 constexpr double kHeight_m = 0.1, kHeightOfOthers_m = 0.5;
+/// Of shipped worlds with something in the middle.
+struct FreePlace {
+  std::string_view world;
+  double x_m = 0.0, y_m = 0.0;
+};
+constexpr FreePlace kFreePlaces[] = {{"room", 1.2, 0.0}, {"bays", 1.2, -1.7}};
 constexpr double kTimeLimit_s = 120.0;
 constexpr double kCpuFactor = 6.0;
 
@@ -136,13 +142,15 @@ Values values_of(const ProgramOptions& options, const std::string& profile,
   const std::string model = options.model.value_or(kModel);
   const Value model_value = file_value(shipped, ShippedKind::kModel, "--model", model);
   const bool is_shipped = shipped.named(ShippedKind::kModel, model, {}).has_value();
-  const std::vector<double> start = {0.0, 0.0, is_shipped ? kHeight_m : kHeightOfOthers_m};
+  const std::string world = options.world.value_or(kWorld);
+  const auto* const free = std::ranges::find(kFreePlaces, world, &FreePlace::world);
+  std::vector<double> start = {0.0, 0.0, is_shipped ? kHeight_m : kHeightOfOthers_m};
+  if (free != std::end(kFreePlaces)) start = {free->x_m, free->y_m, start[2]};
   const std::string place =
       fmt::format("[{}]", fmt::join(options.position_m.value_or(start), ", "));
   Values values = {
       {"name", {toml_text(script_name(options.command))}},
-      {"world",
-       file_value(shipped, ShippedKind::kWorld, "--world", options.world.value_or(kWorld))},
+      {"world", file_value(shipped, ShippedKind::kWorld, "--world", world)},
       {"model", model_value},
       {"time_limit", number_value("--time-limit", limit_s)},
       {"end", {toml::number_text(limit_s + 1.0), number_value("--time-limit", limit_s).option}},
@@ -185,7 +193,8 @@ Options program_rows(ProgramOptions& o) {
       {"--model MODEL", "For a program: name of a shipped UAV, or a file (SDF)", &o.model,
        usually({}, kModel)},
       {"--position X,Y,Z",
-       "For a program: where the UAV starts, in metres; 0,0,0.5 for a --model of your own",
+       "For a program: where the UAV starts, in metres; 0.5 m high for a --model of your own, and "
+       "beside what stands in the middle of a shipped world",
        &o.position_m,
        {.has_commas = true, .count = 3, .usual = "0,0,0.1"}},
       {"--flight-controller", "For a program: what flies the UAV at its commands",

@@ -52,12 +52,13 @@ std::vector<NamedPlot> plots_of(const record::Record& record) {
     add("timeline" + suffix, timeline_plot(run, report::Extent::kWhole));
     add("timeline_zoom" + suffix, timeline_plot(run, report::Extent::kFirstInteractions));
     add("lag" + suffix, lag_plot(run));
+    add("motion" + suffix, motion_plot(run));
   }
   add("path", report::path_plot(runs));
   return plots;
 }
 
-/// Draws ST and ET over wall time, the lag, and the path.
+/// Draws ST and ET over wall time, the lag, height and speed, and the path.
 int draw_plots(const PlotOptions& options, const std::stop_token&) {
   require_kind(options.record, FileKind::kRecord);
   const record::Record record = record::read_record(options.record);
@@ -90,9 +91,10 @@ Options plot_rows(PlotOptions& o) {
 
 Command plot_command() {
   return make_command(
-      "plot", "Plot ST and ET over wall time, the lag, and the path of a run (SVG)", plot_rows,
-      R"(Writes timeline.svg (the whole run), timeline_zoom.svg (its first interactions), lag.svg (only
-for synchronised runs) and path.svg. Needs gnuplot.
+      "plot", "Plot ST and ET over wall time, the lag, the motion and the path of a run (SVG)",
+      plot_rows,
+      R"(Writes timeline.svg (the whole run), timeline_zoom.svg (its first interactions), motion.svg
+(height and speed), lag.svg (only for synchronised runs) and path.svg. Needs gnuplot.
 
 Example:
   tether plot out/one/record.mcap)",

@@ -56,11 +56,11 @@ std::string recorded_at(const fs::path& record) try {
           std::chrono::time_point_cast<std::chrono::system_clock::duration>(written))));
 }
 
-/// What the result beside a record has in doubt; empty: nothing, or it has none.
-std::vector<timing::Doubt> doubts_beside(const fs::path& record) try {
-  return campaign::read_result(record.parent_path()).this_run.doubts;
+/// Of the flight beside a record; none: it has no result.
+std::optional<campaign::TrialResult> result_beside(const fs::path& record) try {
+  return campaign::read_result(record.parent_path());
 } catch (const Error&) {
-  return {};
+  return std::nullopt;
 }
 
 timing::Timing read_any(const fs::path& given) {
@@ -72,7 +72,15 @@ timing::Timing read_any(const fs::path& given) {
   if (const std::string damage = record::describe_damage(record); !damage.empty())
     complain("warning: " + file.string() + ": " + damage);
   timing::Timing timing = timing::of_record(record, file, recorded_at(file));
-  for (const timing::Doubt& doubt : doubts_beside(file)) timing::add(timing, doubt);
+  if (const auto result = result_beside(file)) {
+    if (result->outcome == campaign::Outcome::kFailed)
+      throw Error(ErrorCode::kBadFile, {file.string()},
+                  fmt::format("is of a flight that failed ({}), which does not say how long the "
+                              "program takes. Give flights that were flown to their end",
+                              result->reason))
+          .about(file.string());
+    for (const timing::Doubt& doubt : result->this_run.doubts) timing::add(timing, doubt);
+  }
   return timing;
 }
 

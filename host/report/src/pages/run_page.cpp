@@ -46,10 +46,11 @@ std::string outcome_sentences(const campaign::TrialResult& trial) {
 
 std::string plots_part(FigureMaker& figures, const record::Record& record) {
   std::vector<PlottedRun> runs;
-  std::string times;
+  std::string times, motion;
   for (const record::SutInfo& sut : record.header.suts) {
     const PlottedRun run{&record, sut.uav, sut.uav, runs.size()};
     runs.push_back(run);
+    motion += figures.plot(motion_plot(run), fmt::format("Height and speed of {}.", sut.uav));
     times += figures.plot(
         timeline_plot(run, Extent::kFirstInteractions),
         fmt::format("Simulated and execution time of {} over wall time: first interactions.",
@@ -62,7 +63,7 @@ std::string plots_part(FigureMaker& figures, const record::Record& record) {
   }
   const std::string path =
       figures.plot(path_plot(runs), fmt::format("Path, seen from above. {}", kPathCaption));
-  return element("h2", "The flight") + path +
+  return element("h2", "The flight") + path + motion +
          folded("How the simulation kept up with the program", times);
 }
 

@@ -50,13 +50,15 @@ std::string answers_html(const std::vector<std::vector<Verdict>>& groups) {
 std::string verdict_picture_html(const std::vector<std::vector<Verdict>>& groups) {
   const std::string drawing = verdict_picture(groups);
   if (drawing.empty()) return "";
-  return figure(
-      drawing,
+  std::string caption =
       "Each sign is one flight: a dot reached the goal, a cross missed it, a ring failed "
-      "and is not counted. A bar is the median computing time per image, by stage, and "
-      "grey for waiting for shared cores. Its thin line ends at the time that 95 % of the "
-      "images stay within. Dashed: the time until the camera's next image.",
-      "pair");
+      "and is not counted.";
+  if (has_bars(groups))
+    caption +=
+        " A bar is the median computing time per image, by stage, and grey for waiting for shared "
+        "cores. Its thin line ends at the time that 95 % of the images stay within. Dashed: the "
+        "time until the camera's next image.";
+  return figure(drawing, caption, "pair");
 }
 
 }  // namespace tether::report

@@ -107,6 +107,11 @@ std::string drawing_of(const std::string& title, const std::string& words, const
 
 }  // namespace
 
+bool has_bars(const std::vector<std::vector<Verdict>>& groups) {
+  return std::ranges::any_of(picture_rows(groups),
+                             [](const PictureRow& row) { return has_bar(*row.condition); });
+}
+
 std::string verdict_picture(const std::vector<std::vector<Verdict>>& groups) {
   const std::vector<PictureRow> rows = picture_rows(groups);
   if (rows.empty()) return "";
@@ -126,7 +131,7 @@ std::string verdict_picture(const std::vector<std::vector<Verdict>>& groups) {
         {most_s, pace.median_s, pace.p95_s, pace.offered_hz ? 1.0 / *pace.offered_hz : 0.0});
   }
   std::string drawings = drawing_of("Flights of each condition", words, flights, y);
-  if (!(most_s > 0.0)) return drawings;
+  if (!has_bars(groups)) return drawings;
   std::string bars;
   y = kPictureTop;
   for (const PictureRow& row : rows) {

@@ -164,7 +164,8 @@ Table run_table(const campaign::TrialResult& trial) {
   table.headings = {single_headings({"Metric", "Value", "Limit"})};
   for (const campaign::MetricValue& metric : trial.metrics) {
     table.rows.push_back(
-        {with_unit(metric.label, metric.unit), decimals(metric.value), limit_text(metric)});
+        {with_unit(metric.label, metric.unit), decimals(metric.value),
+         limit_text(metric) + (metric.value && !metric.is_met() ? ", missed" : "")});
     if (!metric.value)
       table.notes.push_back(
           fmt::format("{}: no value ({}).", metric.label, metric.missing_because));

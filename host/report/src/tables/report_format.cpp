@@ -58,6 +58,7 @@ std::string share_text(double value) {
 }
 
 std::string short_ms(double seconds) {
+  if (seconds > 0.0 && seconds < 0.00095) return fmt::format("{:.2g} ms", 1e3 * seconds);
   return fmt::format("{:.{}f} ms", 1e3 * seconds, seconds < 0.01 ? 1 : 0);
 }
 

@@ -201,7 +201,7 @@ TEST_F(CampaignPage, OfOneRunShowsItsOutcomeAndPlots) {
        "reports: the anchor is in the middle.",
        "Time required (s)", "<h2>Contacts</h2>", "&lt;wall&gt;", "2.930", "3.800",
        "<h2>Camera images</h2>"});
-  check_page(html, 13);  // flight, timeline twice, lag, path, four images, four of depths
+  check_page(html, 14);  // flight, timeline twice, lag, path, motion, four images, four of depths
 }
 
 TEST_F(CampaignPage, OfOneRunDoesNotNeedARecordButAResult) {

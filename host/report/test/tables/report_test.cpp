@@ -174,6 +174,8 @@ TEST_F(Report, OfOneRunHasItsLimitsAndNotes) {
   EXPECT_THAT(table.notes, ElementsAre("Oscillations: no value (no ground truth).",
                                        "every SUT reached its goal within the limits.",
                                        "Note: a signal stopped the SUT; suspended."));
+  one.metrics[1].value = 31.0;
+  EXPECT_EQ(run_table(one).rows[1].back(), "30, missed");
 }
 
 TEST_F(Report, ForProgramsHasFullPrecisionAndNotes) {

@@ -39,6 +39,9 @@ std::optional<Plot> timeline_plot(const PlottedRun& run, Extent extent);
 /// fewer than two interactions.
 std::optional<Plot> lag_plot(const PlottedRun& run);
 
+/// Height [m] and speed [m/s] of a UAV over ST. None with fewer than two points of ground truth.
+std::optional<Plot> motion_plot(const PlottedRun& run);
+
 /// Paths, seen from above, with ticks for the heading, start and end, and the first run's anchors
 /// to scale (paper, Figs. 6, 7). A dashed line is the dead reckoning of the SUT from the true
 /// start, if the SUT recorded it. Both axes have the same scale. None if no run has ground truth.
