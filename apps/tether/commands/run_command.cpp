@@ -3,6 +3,7 @@
 #include "commands/program_scenario.h"
 #include "options/common_options.h"
 #include "options/junit_option.h"
+#include "options/refuse_option.h"
 #include "reading/file_kind.h"
 #include "reading/world_options.h"
 #include "terminal/print.h"
@@ -68,8 +69,13 @@ runner::TrialRequest make_request(const RunOptions& options,
   request.scenario =
       is_made ? made_scenario
               : find(scenario::ShippedKind::kScenario, options.scenario, FileKind::kScenario);
-  if (is_made && request.condition.empty() && options.program.cpu_factor)
-    request.condition = "target";
+  if (is_made && options.program.cpu_factor) {
+    if (request.condition.empty()) request.condition = "target";
+    if (request.condition != "target")
+      refuse_option("--cpu-factor", fmt::format("flies the condition \"target\", not \"{}\". Leave "
+                                                "out one of the two options.",
+                                                request.condition));
+  }
   for (const std::string& text : options.settings)
     request.settings.push_back(scenario::parse_setting(text, std::filesystem::current_path()));
   request.reading = world_options(options.reading, shipped);

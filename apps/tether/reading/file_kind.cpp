@@ -25,7 +25,7 @@ struct KindText {
   const char* name;
   const char* use;  ///< what to do with it; {} is its path
 };
-constexpr std::array<KindText, 11> kFileKinds = {{
+constexpr std::array<KindText, 12> kFileKinds = {{
     {"a scenario", "To fly it, type: tether run {}"},
     {"a campaign", "To fly it, type: tether campaign {}"},
     {"a sensor profile", "To use it, type: tether run SCENARIO --profile {}"},
@@ -39,6 +39,8 @@ constexpr std::array<KindText, 11> kFileKinds = {{
      "To report it, type: tether report {0}; its record is "
      "{0}/record.mcap"},
     {"the folder of a campaign", "To report it, type: tether report {}"},
+    {"a program",
+     "To fly it, type: tether run -- {}, with its interpreter before it if it needs one"},
 }};
 
 /// The keys by which a TOML file is recognised: it has all of the first list and none of the
@@ -90,6 +92,11 @@ std::optional<FileKind> kind_of(const fs::path& path) {
   const std::string begin = os::begin_of(path, kMcap.size());
   if (begin == kMcap) return FileKind::kRecord;
   if (begin.starts_with('<')) return FileKind::kWorld;
+  if (begin.starts_with("#!") ||
+      begin.starts_with("\x7f"
+                        "ELF") ||
+      path.extension() == ".py" || path.extension() == ".js")
+    return FileKind::kProgram;
   return kind_of_toml(path);
 }
 

@@ -18,6 +18,7 @@ enum class FileKind {
   kRecord,
   kRun,             ///< a folder
   kCampaignFolder,  ///< a folder with the trials of a campaign
+  kProgram,
 };
 
 /// By its content; none if it is none of them, cannot be read, or could be several.

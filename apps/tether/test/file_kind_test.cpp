@@ -41,6 +41,13 @@ TEST(FileKind, OfFoldersAndRecordsIsRecognisedAndOthersMayBeAnything) {
   EXPECT_EQ(kind_of(scratch.path("killed")), FileKind::kRun);
   EXPECT_EQ(kind_of(scratch.path("killed/record.mcap")), FileKind::kRecord);
   EXPECT_EQ(kind_of(scratch.path("campaign")), FileKind::kCampaignFolder);
+  for (const std::string& program :
+       {scratch.write("fly.py", "import cv2\n"), scratch.write("fly", "#!/bin/sh\n")}) {
+    EXPECT_EQ(kind_of(program), FileKind::kProgram);
+    const Error error =
+        thrown_error(ErrorCode::kUsage, [&] { require_kind(program, FileKind::kScenario); });
+    EXPECT_NE(std::string(error.what()).find("tether run -- " + program), std::string::npos);
+  }
   for (const fs::path& other :
        {scratch.path(), scratch.path("none"), fs::path("/dev/zero"),
         fs::path(scratch.write("a", "")), fs::path(scratch.write("b.toml", "name = [")),

@@ -31,14 +31,29 @@ bool is_source(const std::filesystem::path& file) {
   return std::ranges::count(kExtensions, file.extension().string()) > 0;
 }
 
-/// The file with which a command line in one word begins: of "/bin/fly fast", "/bin/fly". Empty: it
+/// Beside this program, or in a folder of PATH; empty: in none.
+std::filesystem::path found_by_name(const std::string& name) {
+  std::vector<std::filesystem::path> folders{own_file().parent_path()};
+  const char* path = std::getenv("PATH");
+  std::istringstream list(path ? path : "");
+  for (std::string folder; std::getline(list, folder, ':');) folders.emplace_back(folder);
+  const auto found =
+      std::ranges::find_if(folders, [&](const auto& folder) { return is_program(folder / name); });
+  return found == folders.end() ? std::filesystem::path() : *found / name;
+}
+
+/// What to write in place of a command line in one word: of "/bin/fly fast", two words. Empty: it
 /// is no command line.
-std::string file_before_blank(const std::string& word) {
+std::string apart(const std::string& word) {
   std::error_code ignored;
   for (std::size_t blank = word.find(' '); blank != std::string::npos;
-       blank = word.find(' ', blank + 1))
-    if (std::filesystem::is_regular_file(word.substr(0, blank), ignored))
-      return word.substr(0, blank);
+       blank = word.find(' ', blank + 1)) {
+    const std::string program = word.substr(0, blank);
+    const bool has_path = program.find('/') != std::string::npos;
+    if (has_path ? std::filesystem::is_regular_file(program, ignored)
+                 : !program.empty() && !found_by_name(program).empty())
+      return "Write each argument apart: \"" + program + "\", \"" + word.substr(blank + 1) + "\"";
+  }
   return "";
 }
 
@@ -51,9 +66,8 @@ std::string why_not(const std::filesystem::path& file) {
                            : "it is not executable. Type: chmod +x " + file.string();
   if (std::ranges::find(file, std::filesystem::path("~")) != file.end())
     return "'~' does not stand for your home folder here. Write the whole path";
-  if (const std::string program = file_before_blank(file); !program.empty())
-    return "there is no such file. Write each argument apart: \"" + program + "\", \"" +
-           file.string().substr(program.size() + 1) + "\"";
+  if (const std::string words = apart(file); !words.empty())
+    return "there is no such file. " + words;
   return "there is no such file. Build it, or correct its path";
 }
 
@@ -97,15 +111,12 @@ std::filesystem::path find_file(const std::string& name) {
     if (is_program(name)) return name;
     throw Error(ErrorCode::kSetup, "cannot start \"" + name + "\": " + why_not(name)).about(name);
   }
-  std::vector<std::filesystem::path> folders{own_file().parent_path()};
-  const char* path = std::getenv("PATH");
-  std::istringstream list(path ? path : "");
-  for (std::string folder; std::getline(list, folder, ':');) folders.emplace_back(folder);
-  for (const auto& folder : folders)
-    if (is_program(folder / name)) return folder / name;
-  throw Error(ErrorCode::kSetup, "cannot start \"" + name + "\": it is neither in " +
-                                     own_file().parent_path().string() +
-                                     " nor in PATH. Install it, or give its path, with a '/'")
+  if (std::filesystem::path found = found_by_name(name); !found.empty()) return found;
+  const std::string words = apart(name);
+  throw Error(ErrorCode::kSetup,
+              "cannot start \"" + name + "\": it is neither in " +
+                  own_file().parent_path().string() + " nor in PATH. " +
+                  (words.empty() ? "Install it, or give its path, with a '/'" : words))
       .about(name);
 }
 

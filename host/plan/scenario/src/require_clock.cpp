@@ -17,6 +17,13 @@ void require_clock(const Scenario& scenario, const Condition& condition) {
                               uav.placement.name, condition.name))
           .about(uav.placement.name);
     const computer::ClockKind clock = computer_of(condition, i).clock.kind;
+    if (uav.sut.is_as_is && clock == computer::ClockKind::kScripted)
+      throw Error(ErrorCode::kBadFile, scenario.where("as_is"),
+                  fmt::format("the SUT of UAV \"{}\" flies as it is, but condition \"{}\" has the "
+                              "clock \"scripted\", which charges each call of Tether's library. "
+                              "Use clock = \"cpu\" or \"wall\".",
+                              uav.placement.name, condition.name))
+          .about(uav.placement.name);
     if (!uav.sut.concurrent || clock == computer::ClockKind::kWall) continue;
     throw Error(
         ErrorCode::kBadFile, scenario.where("concurrent"),

@@ -26,7 +26,7 @@ TEST(RequireClock, RefusesAllButTheWallClockForAConcurrentProgram) {
   EXPECT_NO_THROW(require_clock(scenario, condition));
 }
 
-TEST(RequireClock, RefusesEmulatorsForAProgramAsItIs) {
+TEST(RequireClock, RefusesEmulatorsAndTheScriptedClockForAProgramAsItIs) {
   Scenario scenario;
   scenario.file = "/s/square.toml";
   scenario.uavs.resize(1);
@@ -35,6 +35,9 @@ TEST(RequireClock, RefusesEmulatorsForAProgramAsItIs) {
   Condition condition;
   condition.computers[0].clock.kind = computer::ClockKind::kCpu;
   EXPECT_NO_THROW(require_clock(scenario, condition));
+  condition.computers[0].clock.kind = computer::ClockKind::kScripted;
+  expect_refusal(0, "uav1", [&] { require_clock(scenario, condition); });
+  condition.computers[0].clock.kind = computer::ClockKind::kCpu;
   condition.computers[0].target.emplace();
   EXPECT_NO_THROW(require_clock(scenario, condition));
   condition.computers[0].target->program_folder = "/opt/arm";

@@ -163,6 +163,8 @@ std::string sentence_of(const Advice& advice, const Verdict& verdict) {
       return "Cool the board, or give it enough power (`tether target check`), and fly again.";
     case Kind::kSpeedUpStage:
       return stage_advice(advice, lead);
+    case Kind::kMendDoubt:
+      return "Fix what is doubtful first, if it was not meant.";
     case Kind::kMendProgram:
       return "If the program was not meant to end so, fix it and fly again.";
     case Kind::kTryFaster:
@@ -185,6 +187,8 @@ std::string sentence_of(const Advice& advice, const Verdict& verdict) {
     case Kind::kFindThreshold:
       return threshold_advice(lead) + uavs_advice(lead);
     case Kind::kFlyMore:
+      if (lead.planned == 1 && (!lead.sizing || lead.sizing->between))
+        return "One flight shows little. Fly more, with other seeds (`--seed`).";
       if (lead.planned == 1 && verdict.point.empty())
         return "One flight shows little. Fly more, with other seeds: " + campaign_command(lead);
       if (advice.flights == 0)

@@ -15,6 +15,7 @@
 #include <tether/base/text_table.h>
 #include <tether/campaign/copies.h>
 #include <tether/campaign/statistics.h>
+#include <tether/energy/meter.h>
 #include <tether/report/size_report.h>
 
 // Speed is the reason of a missed goal only where the flights show it: a condition that differs in
@@ -32,7 +33,8 @@ constexpr double kSameCost = 1.1;  // of an image, from flight to flight
 constexpr double kMuchFaster = 10.0;
 constexpr double kHardlyComputes = 0.25;
 constexpr SimTime kBeforeAnyProgram{std::chrono::milliseconds(50)};
-constexpr double kEmpty = 0.01;  // share of the battery's capacity
+constexpr double kHardlyAnyEnergy = 0.05;  // of all that a flight takes
+constexpr double kEmpty = 0.01;            // share of the battery's capacity
 constexpr double kClearlyLess = 0.9;
 
 struct Compared {
@@ -287,6 +289,23 @@ std::string possible_cause(const campaign::TrialResult& flight, const std::optio
   for (const Warning& warning : flight.warnings)
     if (warning.consequence == Consequence::kDoubtful)
       return warning.subject + " " + warning.message;
+  for (const campaign::MetricValue& metric : flight.metrics)
+    if (flight.end == campaign::kEndTimeLimit && metric.name == "time_required" && metric.max &&
+        *metric.max > to_seconds(flight.sync.st_at_end))
+      return fmt::format(
+          "the time limit ended the flight at {:.4g} s, before {} of at most {:g} s "
+          "could be missed",
+          to_seconds(flight.sync.st_at_end), in_a_sentence(metric.label), *metric.max);
+  for (const campaign::UavEnergy& own : flight.energy) {
+    const double computing_J = own.spent_J[static_cast<std::size_t>(energy::Cause::kComputing)] +
+                               own.spent_J[static_cast<std::size_t>(energy::Cause::kIdle)];
+    const double share = computing_J / std::max(campaign::total_J(own.spent_J), 1e-9);
+    if (own.is_empty() && share < kHardlyAnyEnergy)
+      return fmt::format(
+          "the battery of {} is empty at the end, and the computer took {:.2g} % of "
+          "its energy",
+          own.uav, 100.0 * share);
+  }
   if (const judge::ClauseVerdict* clause = of_forgotten_task(flight)) return clause->limited_by;
   for (const judge::ClauseVerdict& clause : flight.clauses)
     if (!clause.met && !clause.quantity.empty() && clause.quantiles.empty())

@@ -31,6 +31,7 @@ std::string settings_without(const Verdict& point, bool (*is_left_out)(const cam
 }
 
 /// One flight at each factor shows that flight only, and a world without its wind less.
+/// @param flown several: of one factor, nothing is compared
 std::optional<Answer> sufficient_factor(const std::string& what, const ByFactor& flown) {
   const auto next = std::ranges::find_if(
       flown, [](const auto& one) { return !is_sufficient(one.second->ruling); });
@@ -79,7 +80,8 @@ std::vector<Answer> sufficient_factors(const std::vector<Verdict>& points) {
             &point.conditions[i];
     }
     for (const auto& [what, by_factor] : flown)
-      if (auto answer = sufficient_factor(what, by_factor)) answers.push_back(std::move(*answer));
+      if (auto answer = by_factor.size() > 1 ? sufficient_factor(what, by_factor) : std::nullopt)
+        answers.push_back(std::move(*answer));
   }
   return answers;
 }

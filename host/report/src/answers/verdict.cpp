@@ -48,6 +48,26 @@ std::string limited(const campaign::MetricValue& metric) {
                      metric.unit == "1" ? "" : " " + metric.unit);
 }
 
+/// "hit 'room'", "uav2 hit 'room'": the hardest of all.
+std::string crash_text(const campaign::TrialResult& trial) {
+  const record::Contact* hardest = nullptr;
+  for (const campaign::UavContacts& own : trial.contacts)
+    if (own.hard > 0 && own.hardest && (!hardest || own.hardest->speed_m_s > hardest->speed_m_s))
+      hardest = &*own.hardest;
+  if (hardest == nullptr) return "";
+  return fmt::format("{}hit '{}'", trial.suts.size() > 1 ? hardest->uav + " " : "", hardest->with);
+}
+
+/// Of several programs, those that it found at work: "uav2 was still flying".
+std::string unfinished_text(const campaign::TrialResult& trial) {
+  std::vector<std::string> uavs;
+  for (const campaign::SutResult& sut : trial.suts)
+    if (!sut.finished) uavs.push_back(sut.uav);
+  if (trial.suts.size() < 2 || uavs.empty()) return "";
+  return fmt::format("the program{} of {} had not ended", uavs.size() > 1 ? "s" : "",
+                     joined_with_and(uavs));
+}
+
 /// What of the flight missed its limit. Empty: at most metrics without a value.
 MissedLimits missed_in(const campaign::TrialResult& trial) {
   MissedLimits missed;
@@ -58,8 +78,8 @@ MissedLimits missed_in(const campaign::TrialResult& trial) {
   if (trial.end == campaign::kEndBatteryEmpty ||
       std::ranges::any_of(trial.energy, &campaign::UavEnergy::is_empty))
     add("“battery not empty”");
-  if (has_crash(trial)) add("“no crash”");
-  if (trial.end == campaign::kEndTimeLimit) add("the time limit");
+  if (has_crash(trial)) add("“no crash”", crash_text(trial));
+  if (trial.end == campaign::kEndTimeLimit) add("the time limit", unfinished_text(trial));
   // What ended the flight is why others could not be judged.
   const bool has_ended_it = trial.end == campaign::kEndKilled;
   const auto add_clauses = [&](bool judged) {
@@ -263,6 +283,8 @@ std::vector<Advice> advice_on(const ConditionVerdict& lead) {
   else if (lead.unsound == 0 && lead.planned > lead.flown + lead.failed)
     advice.push_back({Kind::kFlyRest});
   if (lead.throttled > 0) advice.push_back({Kind::kCoolBoard, lead.condition});
+  if (!lead.doubtful.empty() && lead.ruling >= Ruling::kUndecided)
+    advice.push_back({Kind::kMendDoubt});
   switch (lead.ruling) {
     case Ruling::kVoid:
       advice.push_back({Kind::kReadAudit, lead.condition});

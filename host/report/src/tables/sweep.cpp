@@ -50,17 +50,23 @@ const campaign::MetricValue* find_metric(const Sweep& sweep, const std::string& 
 
 // The x axis.
 struct Axis {
-  std::size_t key = 0;  ///< index into the settings
+  std::vector<std::size_t> keys;  ///< indices into the settings: several if they vary together
   std::string label;
   std::vector<std::string> values;  ///< distinct, in the order of the points
   std::vector<double> places;       ///< of each value
   bool is_numeric = true;
 };
 
-std::vector<std::string> distinct_values(const Sweep& sweep, std::size_t key) {
+std::string value_of(const campaign::ScenarioResults& point, const std::vector<std::size_t>& keys) {
+  std::string text;
+  for (const std::size_t key : keys) text += (text.empty() ? "" : ", ") + point.settings[key].value;
+  return text;
+}
+
+std::vector<std::string> distinct_values(const Sweep& sweep, const std::vector<std::size_t>& keys) {
   std::vector<std::string> values;
   for (const campaign::ScenarioResults* point : sweep.points) {
-    const std::string& value = point->settings[key].value;
+    const std::string value = value_of(*point, keys);
     if (std::ranges::find(values, value) == values.end()) values.push_back(value);
   }
   return values;
@@ -69,10 +75,18 @@ std::vector<std::string> distinct_values(const Sweep& sweep, std::size_t key) {
 Axis axis_of(const Sweep& sweep) {
   const auto& settings = sweep.points.front()->settings;
   Axis axis;
+  std::vector<std::size_t> varied;
   for (std::size_t key = 0; key < settings.size(); ++key) {
-    std::vector<std::string> values = distinct_values(sweep, key);
+    std::vector<std::string> values = distinct_values(sweep, {key});
+    if (values.size() > 1) varied.push_back(key);
     if (values.size() <= axis.values.size()) continue;
-    axis = {key, settings[key].key, std::move(values), {}, true};
+    axis = {{key}, settings[key].key, std::move(values), {}, true};
+  }
+  // Of keys that vary together, none can be said to make the difference.
+  if (varied.size() > 1 && axis.values.size() == sweep.points.size()) {
+    axis = {varied, "", distinct_values(sweep, varied), {}, true};
+    for (const std::size_t key : varied)
+      axis.label += (axis.label.empty() ? "" : ", ") + settings[key].key;
   }
   for (const std::string& value : axis.values) {
     const auto number = number_in(value);
@@ -85,7 +99,7 @@ Axis axis_of(const Sweep& sweep) {
 }
 
 double place_of(const Axis& axis, const campaign::ScenarioResults& point) {
-  const auto found = std::ranges::find(axis.values, point.settings[axis.key].value);
+  const auto found = std::ranges::find(axis.values, value_of(point, axis.keys));
   return axis.places[static_cast<std::size_t>(found - axis.values.begin())];
 }
 
@@ -110,7 +124,8 @@ std::vector<Series> series_of(const Sweep& sweep, const Axis& axis) {
   for (const campaign::ScenarioResults* point : sweep.points) {
     std::string others;
     for (std::size_t key = 0; key < point->settings.size(); ++key) {
-      const bool is_shown = key != axis.key && sweep.points.size() > axis.values.size();
+      const bool is_shown =
+          std::ranges::count(axis.keys, key) == 0 && sweep.points.size() > axis.values.size();
       if (is_shown)
         others += fmt::format(", {} {}", last_part(point->settings[key].key),
                               short_value(point->settings[key].value));

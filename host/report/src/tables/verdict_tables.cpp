@@ -79,11 +79,10 @@ Table rulings_table(const std::vector<Verdict>& points) {
     }
   }
   table.notes = {
-      fmt::format(
-          "Fast enough: {} flights or more reach the goal within the limits, by the exact "
-          "interval (Clopper and Pearson) of different flights: copies, whose seeds change "
-          "nothing, count once. In the flights so far: all did, but they are too few to be sure.",
-          kWanted),
+      fmt::format("Fast enough: {} flights or more reach the goal within the limits, by the exact "
+                  "interval (Clopper and Pearson) of different flights: copies, whose seeds change "
+                  "nothing, count once. “So far”: all did, but they are too few to be sure.",
+                  kWanted),
       "Headroom per image: how many times slower the program could compute and still read every "
       "image of the camera, in 95 % of them; below 1, it skips images, which many tasks tolerate. "
       "The "

@@ -48,6 +48,27 @@ TEST_F(MissReasons, CountTheOwnGoalOfEachProgram) {
                              HasSubstr("but meets the own goal of uav2's program.")));
 }
 
+TEST_F(MissReasons, CanBeATimeLimitBelowTheMetricsOrABatteryThatTheRotorsEmpty) {
+  const std::size_t board = add("board", 0, 5, measured(0.2));
+  for (campaign::TrialResult& trial : trials(board)) {
+    trial.end = campaign::kEndTimeLimit;
+    trial.sync.st_at_end = SimTime(std::chrono::seconds(5));
+    trial.metrics = {{"time_required", "time_required", "Time required", "s", {}, "", {}}};
+    trial.metrics[0].max = 20.0;
+  }
+  EXPECT_THAT(answers_of({verdict()})[0].rest,
+              HasSubstr("the time limit ended the flight at 5 s, before time required of at most "
+                        "20 s could be missed"));
+  for (campaign::TrialResult& trial : trials(board)) {
+    trial.metrics[0].max = 4.0;
+    campaign::UavEnergy& own = trial.energy.emplace_back();
+    own.uav = "uav1";
+    own.charge_from = 1.0;
+    own.spent_J = {400.0, 90.0, 5.0, 5.0, 0.0, 0.0};
+  }
+  EXPECT_THAT(answers_of({verdict()})[0].rest, HasSubstr("the computer took 2 % of its energy"));
+}
+
 // An exit code can mean that the goal was missed, or that the program crashed.
 TEST_F(MissReasons, OfAProgramAsItIsCanBeItsOwnFailure) {
   const std::size_t board = add("board", 0, 5, measured(0.2));

@@ -51,6 +51,14 @@ TEST(SweepPlot, IsOverTheKeyWithTheMostValues) {
   EXPECT_THAT(sweep_plot(sweep).value().script, HasSubstr("$share0 << END\n5 1 "));
 }
 
+TEST(SweepPlot, OfKeysThatVaryTogetherIsOverAllOfThem) {
+  const auto a = point({{"f", "1"}, {"g", "21"}, {"h", "0"}}, {1}),
+             b = point({{"f", "6"}, {"g", "6"}, {"h", "0"}}, {2});
+  const std::string means = sweep_plot({"turn", {&a, &b}}, "time_required").value().script;
+  EXPECT_THAT(means, HasSubstr("set xtics ('1, 21' 0, '6, 6' 1)"));
+  EXPECT_THAT(means, HasSubstr("f, g"));
+}
+
 TEST(SweepPlot, PlacesFilesByTheirOrder) {
   const auto a = point({{"uav.profile", "/x/wide.toml"}}, {1}),
              b = point({{"uav.profile", "/x/narrow.toml"}}, {2});

@@ -63,12 +63,26 @@ std::string refusal_of(const record::Record& record, const std::string& uav) {
   return refusal;
 }
 
+/// Whether a program neither read nor sent anything. One with a flight controller also receives
+/// whenever it waits, whether it listens or not.
+bool did_nothing(const record::Record& record, const record::SutInfo& sut) {
+  const auto is_sent = [&](const auto& logged) {
+    return logged.message.uav == sut.uav && logged.message.to_controller;
+  };
+  const auto is_call = [&](const auto& logged) {
+    const std::string& kind = logged.message.kind;
+    return logged.message.uav == sut.uav && kind != record::kFinish && kind != record::kSleep &&
+           !(kind == record::kReceive && sut.controller);
+  };
+  return std::ranges::none_of(record.autopilot, is_sent) &&
+         std::ranges::none_of(record.interactions, is_call);
+}
+
 /// A program with a flight controller: whether it did anything and, if it says that it has flown,
 /// whether it can have done so.
 /// Doubts go to `warnings`.
-/// @return why it says nothing about its computer; empty: it does
-std::string check_companion(const record::Record& record, SutResult& sut,
-                            std::vector<Warning>& warnings) {
+void check_companion(const record::Record& record, bool nothing, SutResult& sut,
+                     std::vector<Warning>& warnings) {
   constexpr double kAway_m = 0.2;
   constexpr double kHardlyTurned = 0.9962;  // cosine of 5 degrees, half the angle
   const auto is_sent = [&](const auto& logged) {
@@ -76,28 +90,17 @@ std::string check_companion(const record::Record& record, SutResult& sut,
     return m.uav == sut.uav && m.to_controller && m.outcome == record::kDelivered &&
            !m.name.empty();
   };
-  // A program as it is receives whenever it waits, whether it listens or not.
-  const auto is_call = [&](const auto& logged) {
-    constexpr std::string_view kIdle[] = {record::kFinish, record::kSleep, record::kReceive};
-    return logged.message.uav == sut.uav && std::ranges::count(kIdle, logged.message.kind) == 0;
-  };
   const auto doubt = [&](const std::string& what) {
     warnings.push_back({Consequence::kDoubtful, {}, "UAV '" + sut.uav + "'", what});
   };
   const bool has_sent = std::ranges::any_of(record.autopilot, is_sent);
-  if (!has_sent && std::ranges::none_of(record.interactions, is_call)) {
-    sut.reached_goal = false;
-    if (sut.finished)
-      return fmt::format("the program of UAV '{}' ended before it did anything with it: {}",
-                         sut.uav, sut.outcome);
-    doubt("has a program that did nothing with it: no sensor was read, and nothing sent");
-    return "";
-  }
+  if (nothing)
+    return doubt("has a program that did nothing with it: no sensor was read, and nothing sent");
   if (!sut.reached_goal)
     if (const std::string said = refusal_of(record, sut.uav); !said.empty())
       sut.outcome +=
           fmt::format("{}the flight controller said: {}", sut.outcome.empty() ? "" : "; ", said);
-  if (!sut.reached_goal && sut.finished) return "";
+  if (!sut.reached_goal && sut.finished) return;
   const record::GroundTruth *first = nullptr, *last = nullptr;
   bool has_moved = false, has_turned = false;
   for (const auto& logged : record.ground_truth) {
@@ -112,10 +115,7 @@ std::string check_companion(const record::Record& record, SutResult& sut,
                                              std::begin(first->q_WB), 0.0);  // of half the angle
     has_turned |= std::abs(cosine) < kHardlyTurned;
   }
-  if (!has_sent) {
-    doubt("has a flight controller to which its program sent no message");
-    return "";
-  }
+  if (!has_sent) return doubt("has a flight controller to which its program sent no message");
   const bool began_in_air = first != nullptr && first->clearance_m && *first->clearance_m > kAway_m;
   if (!has_moved && !(began_in_air && has_turned))
     doubt(sut.reached_goal
@@ -127,7 +127,6 @@ std::string check_companion(const record::Record& record, SutResult& sut,
         fmt::format("is in the air ({:.3g} m from anything) when its program ends: what follows "
                     "was not flown",
                     *last->clearance_m));
-  return "";
 }
 
 std::vector<SutResult> sut_results(const record::Record& record,
@@ -148,9 +147,13 @@ std::vector<SutResult> sut_results(const record::Record& record,
       sut.outcome = end.outcome;
       sut.details = end.details;
     }
-    if (info.controller)
-      if (const std::string why = check_companion(record, sut, warnings); never_began.empty())
-        never_began = why;
+    const bool nothing = did_nothing(record, info);
+    if (info.controller) check_companion(record, nothing, sut, warnings);
+    // Without a flight controller, a program can also be there as a load beside others.
+    const bool is_alone = record.header.suts.size() == 1;
+    if (nothing && sut.finished && (info.controller || is_alone) && never_began.empty())
+      never_began = fmt::format("the program of UAV '{}' ended before it did anything with it{}{}",
+                                sut.uav, sut.outcome.empty() ? "" : ": ", sut.outcome);
     suts.push_back(std::move(sut));
   }
   return suts;

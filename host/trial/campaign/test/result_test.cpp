@@ -273,6 +273,9 @@ record::Record finished_record() {
                                  .causality_violations = 0,
                                  .largest_lag = milliseconds(40),
                                  .largest_grid_error = milliseconds(1)};
+  record::Interaction& read = record.interactions.emplace_back().message;
+  read.uav = "uav1";
+  read.kind = record::kSensor;
   return record;
 }
 
@@ -285,10 +288,25 @@ class MakeResult : public Result {
   }
 };
 
+TEST_F(MakeResult, AProgramThatDoesNothingSaysNothingAboutItsComputer) {
+  record::Record record = finished_record();
+  record.interactions.clear();
+  record::Interaction& call = record.interactions.emplace_back().message;
+  call.uav = "uav1";
+  call.kind = record::kFinish;
+  EXPECT_EQ(make(record, kReached).outcome, Outcome::kFailed);
+  record.header.suts.emplace_back().uav = "uav2";
+  EXPECT_NE(make(record, kReached).outcome, Outcome::kFailed) << "it can be a load beside another";
+  record.header.suts.pop_back();
+  call.kind = record::kReceive;
+  EXPECT_NE(make(record, kReached).outcome, Outcome::kFailed) << "of the radio";
+}
+
 // A program whose exit code says that all is well, behind a flight controller.
 TEST_F(MakeResult, ACompanionHasFlownOnlyIfItHasSentSomething) {
   record::Record record = finished_record();
   record.header.suts[0].controller.emplace().name = "built-in";
+  record.interactions.pop_back();
   TrialResult result = make(record, kReached);
   EXPECT_EQ(result.outcome, Outcome::kFailed) << "it says nothing about its computer";
   EXPECT_EQ(result.end, kEndSetupFailed);
@@ -447,7 +465,8 @@ TEST_F(MakeResult, MissesTheGoalBeyondALimit) {
   record.interactions[0].message.request_at = ExecTime(seconds(30) + std::chrono::nanoseconds(1));
   EXPECT_EQ(make(record, kReached).reason,
             "time_required is 30.000000001 s, beyond its limit of 30 s");
-  record.interactions.clear();
+  std::erase_if(record.interactions,
+                [](const auto& logged) { return logged.message.kind == record::kFinish; });
   EXPECT_THAT(make(record, kReached).reason, HasSubstr("no time_required: "));
   record = finished_record();
   record.footer->end = kEndTimeLimit;

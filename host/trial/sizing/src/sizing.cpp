@@ -12,6 +12,7 @@ namespace tether::sizing {
 namespace {
 
 constexpr double kLeastFit = 0.01;
+constexpr std::ptrdiff_t kFewMisses = 3;
 // Every fourth flight looks for slowdowns below the threshold that are not sufficient.
 constexpr std::size_t kOneOf = 4;
 
@@ -74,6 +75,12 @@ void Sizing::add(const Flight& flight) {
   if (basis_ == Basis::kMargins) with_margins_.observe(flight);
   without_.observe(flight);
   flights_.push_back(flight);
+  // If most flights miss the goal for what has no margin, margins say nothing of the threshold.
+  const auto missed = std::ranges::count(flights_, false, &Flight::reached);
+  const auto unexplained = std::ranges::count_if(
+      flights_, [](const Flight& one) { return !one.reached && !one.margin; });
+  if (basis_ == Basis::kMargins && missed >= kFewMisses && 2 * unexplained > missed)
+    basis_ = Basis::kCurve;
 }
 
 const SuccessCurve& Sizing::curve() const {

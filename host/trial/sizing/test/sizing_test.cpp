@@ -134,6 +134,21 @@ TEST(Sizing, LeavesMarginsThatDoNotFit) {
   EXPECT_EQ(sizing.answer(true).basis, Basis::kCurve);
 }
 
+// Programs that fail at random, whatever the computer.
+TEST(Sizing, LeavesMarginsIfMostMissesHaveNone) {
+  const CurveGrid grid({.success = 0.7, .interval = 1.6, .least = 1.0, .most = 20.0});
+  Sizing sizing(grid, true);
+  KeyedRandom random({1, 1, 2});
+  for (std::size_t i = 0; i < 60; ++i) {
+    const double level = grid.slowdowns()[7 * i % grid.slowdowns().size()];
+    const bool reached = random.uniform() < 0.4;
+    sizing.add({level, reached, reached ? std::optional(0.5) : std::nullopt});
+  }
+  const Answer answer = sizing.answer(true);
+  EXPECT_NE(answer.basis, Basis::kMargins);
+  EXPECT_EQ(answer.threshold.low, 0.0) << "no slowdown is known to do";
+}
+
 // One slowdown where all succeed, between others where they do not, is not an answer.
 TEST(Sizing, SpreadsFlightsAlsoAtTheEndsOfTheRange) {
   const CurveGrid grid({.least = 1.0, .most = 20.0});

@@ -169,6 +169,7 @@ struct Advice {
     kCoolBoard,      ///< subject: the condition
     kSpeedUpStage,   ///< subject: the stage
     kTryFaster,      ///< is it the computer? subject: the condition
+    kMendDoubt,      ///< something in the files may not be meant
     kMendProgram,    ///< it ended with a failure of its own
     kFindReason,     ///< it is not the computer; subject: the condition to compare, or empty
     kQuietMachine,   ///< it was busy
