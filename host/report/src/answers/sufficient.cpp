@@ -31,7 +31,6 @@ std::string settings_without(const Verdict& point, bool (*is_left_out)(const cam
 }
 
 /// One flight at each factor shows that flight only, and a world without its wind less.
-/// @param flown several: of one factor, nothing is compared
 std::optional<Answer> sufficient_factor(const std::string& what, const ByFactor& flown) {
   const auto next = std::ranges::find_if(
       flown, [](const auto& one) { return !is_sufficient(one.second->ruling); });
@@ -79,9 +78,13 @@ std::vector<Answer> sufficient_factors(const std::vector<Verdict>& points) {
         flown[fmt::format("“{}”{}", point.conditions[i].condition, other_settings(point))][*value] =
             &point.conditions[i];
     }
+    // Where another key varies with the factor, nothing shows what made the difference.
+    const bool varies_alone = flown.size() == 1 || std::ranges::any_of(flown, [](const auto& one) {
+                                return one.second.size() > 1;
+                              });
+    if (!varies_alone) continue;
     for (const auto& [what, by_factor] : flown)
-      if (auto answer = by_factor.size() > 1 ? sufficient_factor(what, by_factor) : std::nullopt)
-        answers.push_back(std::move(*answer));
+      if (auto answer = sufficient_factor(what, by_factor)) answers.push_back(std::move(*answer));
   }
   return answers;
 }

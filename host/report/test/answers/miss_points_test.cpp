@@ -25,6 +25,21 @@ TEST_F(MissReasons, AreSpeedBetweenPointsOfASweepOverIt) {
   EXPECT_EQ(verdicts_of(results)[1].conditions[0].ruling, Ruling::kNotFastEnough);
 }
 
+TEST_F(MissReasons, AreNotAFactorThatVariesTogetherWithAnotherKey) {
+  campaign::CampaignResults results;
+  for (const int factor : {1, 6}) {
+    scenario_ = {};
+    const std::size_t reached = factor == 1 ? 6 : 0;
+    add("board", reached, 6 - reached, measured(0.02));
+    scenario_.scenario = scenario_.swept_from = "turn";
+    scenario_.settings = {{"cpu_factor", std::to_string(factor)},
+                          {"time_limit_s", factor == 1 ? "21" : "6"}};
+    results.scenarios.push_back(scenario_);
+  }
+  for (const Answer& answer : answers_of(verdicts_of(results)))
+    EXPECT_THAT(answer.lead, testing::Not(HasSubstr("slower would do")));
+}
+
 // One program flies the wrong way; the other one is too slow.
 TEST_F(MissReasons, CountTheOwnGoalOfEachProgram) {
   const std::size_t board = add("board", 0, 5, measured(0.2));
