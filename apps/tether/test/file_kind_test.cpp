@@ -41,8 +41,8 @@ TEST(FileKind, OfFoldersAndRecordsIsRecognisedAndOthersMayBeAnything) {
   EXPECT_EQ(kind_of(scratch.path("killed")), FileKind::kRun);
   EXPECT_EQ(kind_of(scratch.path("killed/record.mcap")), FileKind::kRecord);
   EXPECT_EQ(kind_of(scratch.path("campaign")), FileKind::kCampaignFolder);
-  for (const std::string& program :
-       {scratch.write("fly.py", "import cv2\n"), scratch.write("fly", "#!/bin/sh\n")}) {
+  for (const auto& [name, text] : {std::pair{"fly.py", "import cv2\n"}, {"fly", "#!/bin/sh\n"}}) {
+    const std::string program = scratch.write(name, text);
     EXPECT_EQ(kind_of(program), FileKind::kProgram);
     const Error error =
         thrown_error(ErrorCode::kUsage, [&] { require_kind(program, FileKind::kScenario); });

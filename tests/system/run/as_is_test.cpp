@@ -44,7 +44,7 @@ class AsIs : public testing::Test {
       if (is_fast) record_of_fast_ = read_record(out);
     }
   }
-  /// Of a program that does nothing with its UAV, which is then no goal that was reached.
+  /// Of a program that does nothing with its UAV, whose flight then fails.
   void expect_exit_0(const Output& output) const {
     EXPECT_THAT(result()["suts"][0]["outcome"].get<std::string>(),
                 testing::HasSubstr("exit code 0"))
@@ -155,8 +155,17 @@ TEST_F(AsIs, ThreadsWaitForEachOtherAndForTheRun) {
 }
 
 TEST_F(AsIs, TheExitCodeDecides) {
-  EXPECT_EQ(fly_python("import time, sys\ntime.sleep(1)\nsys.exit(5)\n").code, 1);
+  EXPECT_EQ(fly_python("import socket, sys\n"
+                       "s = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)\n"
+                       "s.bind(('', 14540))\n"
+                       "s.sendto(b'x', s.recvfrom(1000)[1])\n"
+                       "sys.exit(5)\n")
+                .code,
+            1);
   EXPECT_EQ(result()["suts"][0]["outcome"], "the program ended with exit code 5");
+  const Output nothing = fly_python("import time, sys\ntime.sleep(1)\nsys.exit(5)\n");
+  EXPECT_EQ(nothing.code, 3) << "it says nothing about its computer";
+  EXPECT_THAT(nothing.err, testing::HasSubstr("ended before it did anything"));
 }
 
 // From a command line alone: the scenario is made, and is one like any other.
