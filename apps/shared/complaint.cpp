@@ -54,6 +54,21 @@ std::string no_number(const CLI::App& command, const CLI::ParseError& error) {
   return "";
 }
 
+/// Of an option that takes several numbers, and got others than so many; empty: it is another
+/// error.
+std::string wrong_count(const CLI::App& command, const CLI::ParseError& error) {
+  if (error.get_name() != "ArgumentMismatch") return "";
+  for (const CLI::Option* option : command.get_options()) {
+    const int wanted = option->get_expected_min();
+    if (wanted > 1 && std::string_view(error.what()).starts_with(option->get_name() + ":"))
+      return option->get_name() + ": must be " + std::to_string(wanted) +
+             " values with a comma between them" +
+             (option->get_default_str().empty() ? "."
+                                                : ", as in " + option->get_default_str() + ".");
+  }
+  return "";
+}
+
 /// First a word that is neither a command, an option nor an argument, with the nearest one that is.
 std::string what_is_wrong(const CLI::App& command, const CLI::ParseError& error,
                           const std::function<std::string(const std::string&)>& advice) {
@@ -73,8 +88,9 @@ std::string what_is_wrong(const CLI::App& command, const CLI::ParseError& error,
   if (rest.empty() && error.get_name() == "RequiredError" && !subcommands.empty())
     return "no command is given.";
   if (rest.empty()) {
-    const std::string number = no_number(command, error);
-    return number.empty() ? std::string(error.what()) + "." : number;
+    for (const auto& explained : {no_number(command, error), wrong_count(command, error)})
+      if (!explained.empty()) return explained;
+    return std::string(error.what()) + ".";
   }
   const std::string given = rest.front().substr(0, rest.front().find('='));
   for (const std::string& option : known)

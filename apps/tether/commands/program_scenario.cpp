@@ -138,6 +138,8 @@ Values values_of(const ProgramOptions& options, const std::string& profile,
     refuse_option(
         "--flight-controller",
         fmt::format("{} needs your build of it. Add --controller-path FOLDER", controller));
+  if (options.starts_in_air && controller == "none")
+    refuse_option("--starts-in-air", "needs a flight controller that holds the UAV in the air");
   const double limit_s = options.time_limit_s.value_or(kTimeLimit_s);
   const std::string model = options.model.value_or(kModel);
   const Value model_value = file_value(shipped, ShippedKind::kModel, "--model", model);

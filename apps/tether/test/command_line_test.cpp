@@ -60,6 +60,8 @@ TEST(CommandLine, NamesWhatIsWrongInOneLineWithTheHelpOfItsCommand) {
        {"--seed: must be a whole number from 0 to 2^53, but is '1.5'.", "tether run --help"}},
       {{"tether", "size", "x", "--jobs", "1.5"},
        {"--jobs: must be a whole number, but is '1.5'.", "tether size --help"}},
+      {{"tether", "run", "--position", "1,2", "--", "true"},
+       {"--position: must be 3 values with a comma", "as in 0,0,0.1."}},
       {{"tether", "run", "x", "--slowdown", "nan"}, {"--slowdown", "0.001 to 10000"}},
       {{"tether", "size", "x", "--between", "5"}, {"--between", "tether size --help"}}};
   for (const auto& [words, parts] : cases) {

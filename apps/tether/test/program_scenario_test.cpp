@@ -95,6 +95,8 @@ TEST_F(ProgramScenarioTest, AProgramWithTethersLibraryCommandsTheUavItself) {
   options_.uses_library = true;
   EXPECT_FALSE(read().uavs.at(0).sut.is_as_is);
   EXPECT_FALSE(read().uavs.at(0).flight_controller);
+  options_.starts_in_air = true;
+  EXPECT_EQ(thrown_error(ErrorCode::kUsage, [&] { made(); }).subject(), "--starts-in-air");
 }
 
 TEST_F(ProgramScenarioTest, KeepsEachCharacterOfTheArguments) {

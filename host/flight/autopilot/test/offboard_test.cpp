@@ -168,7 +168,7 @@ TEST(Offboard, RefusesNonsenseAndSaysSoOnce) {
   const Message zero_q =
       Message("SET_ATTITUDE_TARGET").set("target_system", 1).set("thrust", 0.5).set("type_mask", 7);
   const std::pair<Message, const char*> cases[] = {
-      {position_target(kNone, 0, 0), "not finite"},
+      {position_target(kNone, 0, 0), "must be finite"},
       {position_target(0, 0, 1e9), "position"},
       {target(kVelocityOnly).set("vx", 1e30), "velocity"},
       {target(0x0DFF), "neither"},
