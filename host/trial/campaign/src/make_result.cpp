@@ -149,9 +149,10 @@ std::vector<SutResult> sut_results(const record::Record& record,
     }
     const bool nothing = did_nothing(record, info);
     if (info.controller) check_companion(record, nothing, sut, warnings);
-    // Without a flight controller, a program can also be there as a load beside others.
-    const bool is_alone = record.header.suts.size() == 1;
-    if (nothing && sut.finished && (info.controller || is_alone) && never_began.empty())
+    // Without a flight controller, a program can also be there as a load beside others; and one
+    // with Tether's library says itself that it has flown.
+    const bool had_to = info.controller || (info.as_is && record.header.suts.size() == 1);
+    if (nothing && sut.finished && had_to && never_began.empty())
       never_began = fmt::format("the program of UAV '{}' ended before it did anything with it{}{}",
                                 sut.uav, sut.outcome.empty() ? "" : ": ", sut.outcome);
     suts.push_back(std::move(sut));

@@ -290,6 +290,7 @@ class MakeResult : public Result {
 
 TEST_F(MakeResult, AProgramThatDoesNothingSaysNothingAboutItsComputer) {
   record::Record record = finished_record();
+  record.header.suts[0].as_is = true;
   record.interactions.clear();
   record::Interaction& call = record.interactions.emplace_back().message;
   call.uav = "uav1";
