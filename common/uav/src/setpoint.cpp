@@ -143,6 +143,7 @@ namespace {
 
 std::string complaint_about_joints(const std::vector<double>& angles_rad,
                                    const std::vector<Joint>& joints) {
+  if (joints.empty()) return "the UAV has no joints";
   if (angles_rad.size() != joints.size())
     return "there are " + std::to_string(angles_rad.size()) + " joint angles, but the UAV has " +
            std::to_string(joints.size()) + " joints";

@@ -65,6 +65,7 @@ TEST(Setpoint, OfJointsHasAnAngleWithinTheLimitsForEachOfThem) {
   EXPECT_EQ(complaint(kJoints, {-1, 1.5}), "");
   EXPECT_EQ(complaint(kJoints | kVelocity, {0, 0}), "");
   EXPECT_THAT(complaint(kJoints, {0}), HasSubstr("1 joint angles, but the UAV has 2"));
+  EXPECT_EQ(complaint_about({.mask = kJoints}, FlightLimits{}), "the UAV has no joints");
   EXPECT_THAT(complaint(kJoints, {0, kNan}), HasSubstr("joint angles must be finite"));
   EXPECT_THAT(complaint(kJoints, {0, 1.6}), HasSubstr("'pitch' is not within -0.5..1.5 rad"));
   EXPECT_THAT(complaint(kJoints | kPosition, {0, 0}), HasSubstr("world frame"));

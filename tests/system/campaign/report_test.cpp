@@ -45,7 +45,7 @@ TEST_F(ReportCommand, MakesAPageOfACampaignAndOfARun) {
 
   const auto file = *folder_ / "one.html";
   ASSERT_EQ(run(tether({"report", one(), "--format", "html", "--out", file})).code, 0);
-  EXPECT_EQ(drawings(read_text(file)), 5u);  // the flight, timeline twice, lag, path
+  EXPECT_EQ(drawings(read_text(file)), 6u);  // the flight, timeline twice, lag, path, motion
   EXPECT_FALSE(std::filesystem::exists(one() / "report.html"));
 }
 
@@ -66,7 +66,8 @@ TEST_F(ReportCommand, WritesTablesToAFileAsToTheTerminal) {
 TEST_F(ReportCommand, PlotsARun) {
   const Output output = run(tether({"plot", one() / "record.mcap", "--out", *folder_ / "plots"}));
   ASSERT_EQ(output.code, 0) << output.err;
-  for (const char* name : {"timeline.svg", "timeline_zoom.svg", "lag.svg", "path.svg"})
+  for (const char* name :
+       {"timeline.svg", "timeline_zoom.svg", "lag.svg", "motion.svg", "path.svg"})
     EXPECT_EQ(drawings(read_text(*folder_ / "plots" / name)), 1u) << name;
 }
 

@@ -80,7 +80,8 @@ assert 20 <= len(times) <= 22, times
 assert all(abs(b - a - 0.1) < 2e-3 for a, b in zip(times, times[1:])), times
 assert all(fix[6] == b"1" for fix in fixes)
 )");
-  EXPECT_EQ(output.code, 0) << output.err << said();
+  // A busy disk can leave the answer in doubt.
+  EXPECT_EQ(result()["outcome"], "goal_reached") << output.err << said();
   EXPECT_EQ(audit_code(folder_ / "out"), 0);
 }
 

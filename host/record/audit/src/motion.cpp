@@ -30,6 +30,7 @@ constexpr Duration kPush = std::chrono::milliseconds(100);
 constexpr double kMostPush_m = 0.5;
 // Larger than what the distance of two shapes is rounded by.
 constexpr double kRounding_m = 1e-5;
+constexpr double kDistanceError = 2e-6;  // of the engine's distances: 0.7 mm were seen at 817 m
 
 // The angle from one attitude to the other, and its axis in the body, as one vector [rad].
 std::array<double, 3> turn_rad(const GroundTruth& from, const GroundTruth& to) {
@@ -169,7 +170,8 @@ class MotionCheck {
     if (!last.clearance_m || !knows_shapes_ || !record_.header.only_uavs_move) return;
     if (fleet_[i].uavs != tracks_.size()) return;
     const double most = moved_m(*track.info, last, next.message) +
-                        (tracks_.size() > 1 ? fleet_[i].moved_m : 0.0) + kRounding_m;
+                        (tracks_.size() > 1 ? fleet_[i].moved_m : 0.0) + kRounding_m +
+                        kDistanceError * std::abs(*last.clearance_m);
     const double changed = std::abs(*next.message.clearance_m - *last.clearance_m);
     if (!(changed <= most))
       report_.add(0, next, "the clearance changes by {:.6g} m, but only {:.6g} m were flown",
