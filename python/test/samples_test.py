@@ -3,7 +3,7 @@
 import math
 import unittest
 
-from tether import _abi, samples
+from tether import _abi, samples, vehicle
 from tether.samples import Setpoint, Vec3
 
 
@@ -33,6 +33,24 @@ class Setpoints(unittest.TestCase):
         for wrong in (Setpoint(position_W_m=(1, 2)), Setpoint(q_WB=(1, 0, 0)), Setpoint(rotor_speeds_rad_s=range(9))):
             with self.assertRaises(ValueError):
                 _abi.to_c(wrong)
+
+
+class FastSensor(vehicle.Sensor[int]):
+    """Has a new measurement at each read, as a fast one before a slow computer."""
+
+    def __init__(self) -> None:
+        self._depth = 1
+
+    def read_if_available(self) -> int | None:
+        return 7
+
+
+class Reads(unittest.TestCase):
+    def test_of_all_that_wait_ends_with_what_the_queue_has_room_for(self):
+        sensor = FastSensor()
+        self.assertEqual(sensor.read_all(), [7])
+        sensor._depth = 3
+        self.assertEqual(sensor.read_all(), [7, 7, 7])
 
 
 class Samples(unittest.TestCase):

@@ -123,6 +123,7 @@ class Sensor(Generic[T]):
     def __init__(self, vehicle: "Vehicle", pointer: int) -> None:
         """Of a sensor of the library."""
         self._vehicle = vehicle
+        self._depth = 1  # of its queue
         self._name: bytes = lib.tether_sensor_name(pointer)
         self.name = self._name.decode()
         self.kind = Kind(lib.tether_sensor_get_kind(pointer))
@@ -184,12 +185,16 @@ class Sensor(Generic[T]):
         return self._read(_IF_AVAILABLE)
 
     def read_all(self) -> list[T]:
-        """All measurements that wait in the queue, from the oldest on."""
-        return list(iter(self.read_if_available, None))
+        """All measurements that wait in the queue, from the oldest on; at most as many as it has room for."""
+        waiting: list[T] = []
+        while len(waiting) < self._depth and (sample := self.read_if_available()) is not None:
+            waiting.append(sample)
+        return waiting
 
     def set_queue(self, depth: int) -> None:
         """Lets up to `depth` measurements of a periodic sensor wait, 1 to 4096; reads then get the oldest."""
         check(lib.tether_set_queue(self._vehicle._handle, self._name, min(max(depth, 0), 2**32 - 1)))
+        self._depth = depth
 
 
 _READS: dict[Kind, tuple[str, type[Any]]] = {
