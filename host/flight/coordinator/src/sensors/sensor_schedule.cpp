@@ -117,15 +117,27 @@ void SensorSchedule::set_queue(std::uint32_t queue, SimTime t) {
   queue_ = queue;
 }
 
-// A driver delivers in order: a measurement that is available early waits for the one before it.
+// Reads and looks ahead mostly come with growing t, and then begin where the last one ended.
+std::uint64_t SensorSchedule::delivered_until(const uav::PeriodicTiming& timing, SimTime t) const {
+  const bool is_later = t >= delivered_.at;
+  std::uint64_t end = std::max({unread_, queued_from_.value_or(0), is_later ? delivered_.end : 0});
+  const auto newest = newest_sampled(timing, t);
+  while (newest && end <= *newest &&
+         (driver_.loses(end) || periodic(timing, end).available_at <= t))
+    ++end;
+  if (is_later) delivered_ = {t, end};
+  return end;
+}
+
 std::uint64_t SensorSchedule::oldest_unread(const uav::PeriodicTiming& timing, SimTime t) const {
-  const auto newest = newest_available(timing, t, 0);
-  std::uint64_t first_kept = newest ? newest->index + 1 : 0;
-  for (std::uint32_t kept = 0; first_kept > 0 && kept < queue_; ++kept) {
-    const auto before = newest_arriving(0, first_kept);
-    first_kept = before.value_or(0);
+  const std::uint64_t begin = std::max(unread_, queued_from_.value_or(0));
+  std::uint64_t first = delivered_until(timing, t);
+  for (std::uint32_t kept = 0; kept < queue_; ++kept) {
+    const auto before = newest_arriving(begin, first);
+    if (!before) break;
+    first = *before;
   }
-  return next_arriving(std::max({unread_, queued_from_.value_or(0), first_kept}));
+  return next_arriving(first);
 }
 
 void SensorSchedule::mark_read(const Measurement& measurement) {

@@ -34,8 +34,8 @@ class SensorSchedule {
   /// topic. @pre the driver's jitter has no limit.
   static SensorSchedule in_free_running(const uav::SensorTiming& timing, uav::Driver driver = {});
 
-  /// From a read at `t` on, the newest `queue` measurements wait to be read. When there are
-  /// more than before, what had no place until `t` is gone.
+  /// From a read at `t` on, the newest `queue` measurements that were delivered wait to be read.
+  /// When there are more than before, what had no place until `t` is gone.
   void set_queue(std::uint32_t queue, SimTime t);
 
   /// The measurement for a read at `t`. Periodic: the newest that is available at `t` and not yet
@@ -80,12 +80,21 @@ class SensorSchedule {
   bool is_queued(bool latest) const { return queue_ > 1 && !latest; }
   /// The first index that a read from the queue at `t` can return.
   std::uint64_t oldest_unread(const uav::PeriodicTiming& timing, SimTime t) const;
+  /// The first unread index that has not arrived by `t`. A driver delivers in order: later ones
+  /// wait for it, even if they are available.
+  std::uint64_t delivered_until(const uav::PeriodicTiming& timing, SimTime t) const;
 
   uav::Driver driver_;
   SimTime last_stamp_{};      ///< of those that were read
   std::uint64_t unread_ = 0;  ///< first index after the last one that was read
   std::uint32_t queue_ = 1;
   std::optional<std::uint64_t> queued_from_{};  ///< none: there was no queue yet
+  /// What the latest answer of `delivered_until` was, and for which time.
+  struct Delivered {
+    SimTime at{};
+    std::uint64_t end = 0;
+  };
+  mutable Delivered delivered_{};
 };
 
 }  // namespace tether::coordinator
