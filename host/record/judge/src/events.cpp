@@ -37,7 +37,6 @@ class Calls {
       if (m.uav == uav && m.is_setpoint() && m.sent_at >= span.from && m.sent_at <= span.to)
         setpoints_.push_back(m.sent_at);
     }
-    std::ranges::sort(setpoints_);
   }
 
   /// When the SUT commanded its UAV, by the library or by MAVLink.
