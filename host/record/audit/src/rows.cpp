@@ -14,6 +14,7 @@ struct History {
   ExecTime last_reply_at{};   // a SUT begins with ET 0
   SimTime last_release_at{};  // at ST 0
   bool finished = false;
+  WallTime wall_at_release_before{};  // of the reply before the last one
 };
 
 // Rule 5: between two interactions ET only grows.
@@ -36,7 +37,10 @@ void check_growth(const Entry& entry, const record::SutInfo& info, const History
     return;
   }
   const Wide grown = growth(entry, sut);
-  const Wide elapsed = wide(entry.message.wall_at_arrival) - wide(sut.last_wall_at_release);
+  // A program as it is computes during its calls, each of which it can have sent as soon as it had
+  // the reply before.
+  const WallTime since = info.as_is ? sut.wall_at_release_before : sut.last_wall_at_release;
+  const Wide elapsed = wide(entry.message.wall_at_arrival) - wide(since);
   if (const auto fault = growth_fault(info, grown, elapsed)) report.add(5, entry, "{}", *fault);
 }
 
@@ -63,15 +67,16 @@ void check_arrival(const Entry& entry, const History& sut, Report& report) {
 void check_rows(const record::Record& record, Report& report) {
   for (const auto& [uav, row] : rows_of(record)) {
     if (row.info->concurrent) continue;
-    History history{.last_wall_at_release = record.header.wall_at_start};
+    History history{.last_wall_at_release = record.header.wall_at_start,
+                    .wall_at_release_before = record.header.wall_at_start};
     for (const Entry* entry : row.interactions) {
       check_et(*entry, history, report);
       check_growth(*entry, *row.info, history, report);
       check_script(*entry, *row.info, history, report);
       check_arrival(*entry, history, report);
-      history = {entry->message.wall_at_release, entry->message.reply_at,
-                 entry->message.st_at_release,
-                 history.finished || entry->message.kind == record::kFinish};
+      history = {
+          entry->message.wall_at_release, entry->message.reply_at, entry->message.st_at_release,
+          history.finished || entry->message.kind == record::kFinish, history.last_wall_at_release};
     }
   }
 }

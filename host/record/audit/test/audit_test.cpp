@@ -111,6 +111,19 @@ TEST(Audit, EtGrowsNoFasterThanTheHostsClockAllows) {
   }
 }
 
+// Its other threads and processes may have computed since the reply before that.
+TEST(Audit, EtOfAProgramAsItIsGrowsDuringItsCalls) {
+  for (const auto& [grown, findings] :
+       {std::pair{2 * kSecond, 0}, {3 * kSecond + milliseconds(500), 1}}) {
+    Record record = wall_clocked(grown, kSecond);
+    record.header.suts[0].clock.kind = computer::ClockKind::kCpu;
+    record.header.suts[0].cores = 1;
+    EXPECT_EQ(growth_findings(record), 2);
+    record.header.suts[0].as_is = true;
+    EXPECT_LE(growth_findings(record), findings);
+  }
+}
+
 // All SUTs are started at the start of the run.
 TEST(Audit, TheFirstRequestIsComparedWithTheStart) {
   Record record = wall_clocked(Duration(0), Duration(0));

@@ -113,7 +113,8 @@ OwnTime::OwnTime(const SutStart& sut, const Facts& facts)
     : Timeline(sut.uav, facts),
       barrier_(&sut.barrier),
       least_delay_(sut.least_delay),
-      charges_children_(sut.hello.clock.adds_up_cores()) {
+      charges_children_(sut.hello.clock.adds_up_cores()),
+      released_at_(sut.now) {
   [[maybe_unused]] const sync::SutIndex index = barrier_->add(
       ExecTime{}, facts.is_serial ? sync::SutKind::kSerial : sync::SutKind::kConcurrent);
   assert(index == sut.uav);

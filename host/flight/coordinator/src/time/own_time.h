@@ -43,12 +43,14 @@ class OwnTime : public Timeline {
     barrier_->move_up(uav(), call, reply_at);
     return std::nullopt;
   }
-  // A CPU clock adds what child processes computed during the call.
+  // A CPU clock adds what child processes computed during the call, which the SUT can have sent as
+  // soon as it had the reply before.
   void replied(const record::Interaction& call) override {
     Timeline::replied(call);
     if (plausibility_)
       plausibility_->go_on(barrier_->bound(uav()),
-                           charges_children_ ? call.wall_at_arrival : call.wall_at_release);
+                           charges_children_ ? released_at_ : call.wall_at_release);
+    released_at_ = call.wall_at_release;
   }
   void leave() override {
     Timeline::leave();
@@ -69,6 +71,7 @@ class OwnTime : public Timeline {
   sync::BarrierSynchronizer* barrier_;
   Duration least_delay_;
   bool charges_children_;  // for what they compute during a call
+  WallTime released_at_;   // its last reply was sent
   SimTime called_at_{};    // ST of its last request
   std::size_t calls_ = 0;  // requests at that ST
   std::optional<sync::ClockPlausibility> plausibility_;
