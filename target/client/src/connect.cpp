@@ -99,6 +99,10 @@ Result<std::unique_ptr<Vehicle>> connect(std::unique_ptr<link::Channel> channel,
   return join(std::move(channel), hello, std::move(options));
 }
 
+Result<link::Reply> pass_on(Vehicle& vehicle, decltype(link::Request::body) body) {
+  return dynamic_cast<InteractingVehicle&>(vehicle).pass_on(std::move(body));
+}
+
 Result<std::unique_ptr<Vehicle>> connect(ConnectOptions options) {
   if (!options.exec_socket.empty()) return connect_to_exec(options);
   if (!options.time) options.time = make_wall_source();

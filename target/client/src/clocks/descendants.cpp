@@ -15,19 +15,11 @@ Duration duration_of(const timeval& t) {
   return std::chrono::seconds(t.tv_sec) + std::chrono::microseconds(t.tv_usec);
 }
 
-/// None: it was waited for.
-std::optional<Duration> used_by(pid_t process) {
-  clockid_t clock{};
-  timespec t{};
-  if (::clock_getcpuclockid(process, &clock) != 0 || ::clock_gettime(clock, &t) != 0) return {};
-  return std::chrono::seconds(t.tv_sec) + Duration(t.tv_nsec);
-}
-
 // What a process knows of those for which it has waited is read before its living children. The
 // kernel marks a child ('X') before it adds the child's CPU time to the parent's.
 void add_below(pid_t process, LivingDescendants& sum) {
   for (const pid_t child : os::children_of(process)) {
-    const auto used = used_by(child);
+    const auto used = used_by_process(child);
     const auto stat = os::process_stat(child);
     if (!used || !stat || stat->state == 'X') continue;
     sum.used += *used + stat->waited_children;
@@ -37,6 +29,15 @@ void add_below(pid_t process, LivingDescendants& sum) {
 }
 
 }  // namespace
+
+// The number of its clock is as clock_getcpuclockid() makes it, without asking whether it exists.
+std::optional<Duration> used_by_process(pid_t process) {
+  constexpr unsigned kScheduled = 2;
+  const auto clock = static_cast<clockid_t>((~static_cast<unsigned>(process) << 3) | kScheduled);
+  timespec t{};
+  if (::clock_gettime(clock, &t) != 0) return std::nullopt;
+  return std::chrono::seconds(t.tv_sec) + Duration(t.tv_nsec);
+}
 
 Duration used_by_waited_children() {
   rusage used{};

@@ -9,6 +9,8 @@
 /// CPU time of all processes that this one has started, those that they have started, and so on.
 namespace tether::client {
 
+/// Of a process; none: it has ended, and was waited for.
+std::optional<Duration> used_by_process(pid_t process);
 /// That of the children for which this process has waited, and of those for which they had.
 Duration used_by_waited_children();
 /// Whether there are children for which it has not waited. One system call.

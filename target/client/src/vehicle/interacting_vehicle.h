@@ -53,9 +53,10 @@ class InteractingVehicle : public Vehicle {
       Duration timeout, std::span<const std::string_view> sensors) final;
   Status finish(bool reached_goal, std::string_view outcome, std::string_view details_json) final;
 
- protected:
   using Body = decltype(link::Request::body);
+  Result<link::Reply> pass_on(Body body) { return interact(std::move(body)); }
 
+ protected:
   InteractingVehicle(uav::Catalogue catalogue, std::vector<std::string> peers)
       : catalogue_(std::move(catalogue)),
         peers_(std::move(peers)),

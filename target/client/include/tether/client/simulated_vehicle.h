@@ -7,6 +7,7 @@
 #include <tether/client/sut_clock.h>
 #include <tether/client/vehicle.h>
 #include <tether/link/channel.h>
+#include <tether/link/messages.h>
 
 namespace tether::client {
 
@@ -59,5 +60,9 @@ Result<std::unique_ptr<Vehicle>> connect(ConnectOptions options);
 /// The same over an existing channel (tests, other transports). Ignores options.address.
 Result<std::unique_ptr<Vehicle>> connect(std::unique_ptr<link::Channel> channel,
                                          ConnectOptions options);
+
+/// One interaction as another program asks for it, for those that pass calls on. The vehicle of
+/// `connect` stamps it.
+Result<link::Reply> pass_on(Vehicle& vehicle, decltype(link::Request::body) body);
 
 }  // namespace tether::client

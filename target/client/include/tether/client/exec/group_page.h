@@ -1,0 +1,122 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <csignal>  // pid_t
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+#include <tether/base/result.h>
+#include <tether/base/time.h>
+#include <tether/client/sut_clock.h>
+
+namespace tether::client {
+
+/// What the processes of one program have in common that knows nothing of Tether, in shared memory
+/// (ADR 0095): their execution time, and until when they wait.
+/// tether-exec publishes the course of ET; each process reads it, and registers itself and its
+/// waits.
+///
+/// ET grows by the CPU time of all processes × factor. They share one core, so whoever reads it is
+/// the only one that runs.
+class GroupPage {
+ public:
+  static constexpr std::size_t kProcesses = 512, kThreads = 4096, kWaits = 4096;
+  /// Of a wait without a deadline, and of a process without a timer.
+  static constexpr ExecTime kNever = ExecTime::max();
+
+  /// A process of the program. `timer`, `sensors` and `listens` are its own to write.
+  struct Process {
+    std::atomic<pid_t> id{0};  // 0: none
+    std::atomic<std::int64_t> used_ns{0};
+    std::atomic<ExecTime> timer{kNever};    ///< its first timer that is a descriptor expires
+    std::atomic<std::uint64_t> sensors{0};  ///< bit: index of a sensor that wakes it
+    std::atomic<bool> listens{false};       ///< it has a port of the flight controller
+  };
+  /// A thread waits until then.
+  struct Wait {
+    std::atomic<pid_t> process{0};  // 0: free
+    std::atomic<ExecTime> deadline{kNever};
+    std::atomic<Duration> told_at{Duration(0)};  // by the machine's clock
+    std::atomic<int> tellings{0};
+  };
+
+  /// A thread of a process; `id` is kBegins until it knows that.
+  struct Thread {
+    std::atomic<pid_t> id{0};  // 0: free
+    std::atomic<pid_t> process{0};
+  };
+  static constexpr pid_t kBegins = -1;
+
+  GroupPage() = default;
+  GroupPage(const GroupPage&) = delete;
+  GroupPage& operator=(const GroupPage&) = delete;
+
+  /// Adds a process, from its first instruction on, and its first thread; or finds it. nullptr:
+  /// there are too many.
+  Process* enter(pid_t process);
+  bool has(pid_t process) const;
+  /// Adds a thread. nullptr: there are too many.
+  Thread* begin_thread(pid_t process, pid_t id);
+  static void end_thread(Thread* thread);
+  /// A process begins with another program: it has one thread, which does not wait.
+  void begin_again(pid_t process);
+  /// Takes those out that have ended; what they have computed stays. For tether-exec.
+  void forget_ended();
+  /// CPU time of all processes that have entered, less what was left out. Monotone.
+  Duration used() const;
+  void leave_out(Duration computed) { left_out_ns_ += computed.count(); }
+
+  /// From ET `at`, with `used`, on. For tether-exec.
+  void publish(ExecTime at, Duration used, double factor);
+  ExecTime now() const;
+
+  /// nullptr: there are too many waits.
+  Wait* begin_wait(pid_t process, ExecTime deadline);
+  static void end_wait(Wait* wait);
+  /// The first deadline of all waits and timers; kNever: there is none. A wait that was told three
+  /// times and goes on waits for more, such as a mutex: it is not among them.
+  ExecTime first_deadline() const;
+  /// Whether that process has one that is over and was not told since then. It is told now: by the
+  /// machine's clock, that is `told_at`.
+  bool tell_overdue(pid_t process, ExecTime now, Duration since, Duration told_at);
+
+  const std::array<Process, kProcesses>& processes() const { return processes_; }
+  /// Those that have been used so far.
+  std::span<Thread> threads() { return {threads_.data(), threads_end_.load()}; }
+
+ private:
+  // Odd while something changes that is read together.
+  std::atomic<std::uint32_t> moves_{0}, courses_{0};
+  std::atomic<std::int64_t> ended_ns_{0}, left_out_ns_{0};
+  std::atomic<ExecTime> base_et_{};
+  std::atomic<std::int64_t> base_used_ns_{0};
+  std::atomic<double> factor_{1.0};
+  mutable std::atomic<ExecTime> latest_{};  // that anybody has seen
+  mutable std::atomic<std::int64_t> latest_used_ns_{0};
+  mutable std::array<Process, kProcesses> processes_;
+  std::array<Wait, kWaits> waits_;
+  std::array<Thread, kThreads> threads_;
+  std::atomic<std::size_t> waits_end_{0}, threads_end_{0},
+      processes_end_{0};  // behind the last one used so far
+
+  static_assert(std::atomic<ExecTime>::is_always_lock_free);
+};
+
+struct UnmapGroupPage {
+  void operator()(GroupPage* mapped) const;
+};
+using MappedGroupPage = std::unique_ptr<GroupPage, UnmapGroupPage>;
+/// In a new file. Fails with kInvalid and the error of the system.
+Result<MappedGroupPage> make_group_page(const std::string& file);
+/// The same in another process. Fails also if it is the file of another version.
+Result<MappedGroupPage> map_group_page(const std::string& file);
+
+/// The clock of the group: `elapsed()` is used() × factor, all of it in children. `page` must
+/// outlive it.
+std::unique_ptr<TimeSource> make_group_source(GroupPage& page, double factor);
+
+}  // namespace tether::client
