@@ -58,9 +58,12 @@ bool Callers::drain(CallerId caller, client::LocalSocket& socket, const Events& 
   }
 }
 
-void Callers::send(CallerId caller, const link::Message& message) {
+bool Callers::send(CallerId caller, const link::Message& message) {
   const auto found = connections_.find(caller);
-  if (found != connections_.end() && !found->second.send(message)) connections_.erase(found);
+  if (found == connections_.end()) return false;
+  if (found->second.send(message)) return true;
+  connections_.erase(found);
+  return false;
 }
 
 }  // namespace tether::supervisor

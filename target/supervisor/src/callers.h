@@ -32,7 +32,8 @@ class Callers {
   /// Receives from new connections, and from those that are readable according to `entries`.
   void receive(const std::vector<pollfd>& entries, const Events& events);
 
-  void send(CallerId caller, const link::Message& message);
+  /// False: the caller has gone; `on_gone` is not called.
+  bool send(CallerId caller, const link::Message& message);
   /// Hangs up; `on_gone` is not called.
   void drop(CallerId caller) { connections_.erase(caller); }
 

@@ -73,19 +73,22 @@ void Member::on_message(CallerId caller, link::Message message) {
   callers_.drop(caller);
 }
 
+void Member::refuse(CallerId caller, const link::Refusal& why) {
+  static_cast<void>(callers_.send(caller, why));
+}
+
 void Member::on_hello(CallerId caller, const link::Hello& hello) {
   using Reason = link::Refusal::Reason;
   if (hello.protocol_version != link::kProtocolVersion) {
-    return callers_.send(caller, link::Refusal{Reason::kVersion,
-                                               "tether-exec and the program's library have "
-                                               "different protocol versions"});
+    return refuse(caller, {Reason::kVersion,
+                           "tether-exec and the program's library have different protocol "
+                           "versions"});
   }
   if (!uav_.empty() && !hello.uav.empty() && hello.uav != uav_) {
-    return callers_.send(caller,
-                         link::Refusal{Reason::kUav, "this tether-exec is for UAV '" + uav_ + "'"});
+    return refuse(caller, {Reason::kUav, "this tether-exec is for UAV '" + uav_ + "'"});
   }
-  if (welcome_) return callers_.send(caller, *welcome_);
-  if (refusal_) return callers_.send(caller, *refusal_);
+  if (welcome_) return static_cast<void>(callers_.send(caller, *welcome_));
+  if (refusal_) return refuse(caller, *refusal_);
   waiting_.push_back(caller);
   if (!channel_) connect(hello);
 }

@@ -74,6 +74,7 @@ class Member {
   Callers::Events caller_events();
   void on_message(CallerId caller, link::Message message);
   void on_hello(CallerId caller, const link::Hello& hello);
+  void refuse(CallerId caller, const link::Refusal& why);
   void connect(const link::Hello& hello);
   void on_message(link::Message message);
   void on_welcome(link::Welcome welcome);

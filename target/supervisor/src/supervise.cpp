@@ -1,3 +1,5 @@
+#include "as_is_supervisor.h"
+#include "command.h"
 #include "freezer.h"
 #include "guardian.h"
 #include "membership.h"
@@ -5,20 +7,31 @@
 #include "supervisor.h"
 #include "waiting.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <poll.h>
+#include <pthread.h>
+#include <sched.h>
 #include <signal.h>
 #include <sys/prctl.h>
 #include <sys/signalfd.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <tether/client/exec/group_page.h>
+#include <tether/client/simulated_vehicle.h>
+#include <tether/link/messages.h>
+#include <tether/os/process_table.h>
 #include <tether/supervisor/supervise.h>
+#include <tether/supervisor/supervise_as_is.h>
 
 // What is around the Supervisor: signals, a private folder with the sockets for the commands'
 // threads, a cgroup where there is one, and the guardian that clears up. And the other end of a
@@ -144,7 +157,93 @@ int join(const Settings& settings, const os::FileDescriptor& signals, const Say&
   }
 }
 
+/// This thread, and all processes that it starts, on the core on which it is.
+void stay_on_one_core() {
+  cpu_set_t core;
+  CPU_ZERO(&core);
+  CPU_SET(static_cast<std::size_t>(std::max(0, ::sched_getcpu())), &core);
+  ::sched_setaffinity(0, sizeof core, &core);
+}
+
+/// Of processes that find this one by their environment.
+std::vector<std::string> environment_with(const std::string& library) {
+  std::vector<std::string> all;
+  std::string preloaded = "LD_PRELOAD=" + library;
+  for (char** variable = environ; *variable != nullptr; ++variable) {
+    const std::string one = *variable;
+    if (one.starts_with("LD_PRELOAD=") && one.size() > 11)
+      preloaded += ":" + one.substr(11);
+    else if (!one.starts_with("TETHER_TOKEN=") && !one.starts_with("TETHER_ADDRESS="))
+      all.push_back(one);
+  }
+  all.push_back(preloaded);
+  all.emplace_back("TETHER_AS_IS=group");
+  return all;
+}
+
+int run_as_is(const std::vector<std::string>& command, const std::string& library,
+              const std::string& folder, Guardian& guardian, const os::FileDescriptor& signals,
+              const Say& say) {
+  auto options = client::options_from_environment();
+  if (!options) return fail(say, 2, options.failure().message);
+  if (!options->exec_socket.empty() || options->time->clock().kind != computer::ClockKind::kCpu)
+    return fail(say, 2,
+                "--all-processes needs TETHER_CLOCK=cpu or cpu*FACTOR, and no other tether-exec "
+                "around it");
+  const double factor = options->time->clock().factor;
+  auto page = client::make_group_page(folder + "/page");
+  if (!page) return fail(say, 3, page.failure().message);
+  auto clock = client::make_clock_page();
+  if (!clock) return fail(say, 3, clock.failure().message);
+  auto listener = client::listen_local(folder + "/socket");
+  if (!listener) return fail(say, 3, listener.failure().message);
+  Callers callers(std::move(*listener), clock->descriptor);
+
+  stay_on_one_core();
+  const std::string& program_name = command.front();
+  options->sut_name = program_name.substr(program_name.rfind('/') + 1);
+  options->time = client::make_group_source(**page, factor);
+  auto vehicle = client::connect(std::move(*options));
+  if (!vehicle) return fail(say, 3, vehicle.failure().message);
+  ::pthread_setname_np(::pthread_self(), link::kClientThread);
+  const auto program =
+      start_command({command, environment_with(library)}, folder + "/socket", std::nullopt);
+  if (!program) return fail(say, 2, program.failure().message);
+  guardian.watch(*program);
+  (*page)->enter(*program);
+
+  AsIsSupervisor supervisor(*program, **page, std::move(*vehicle), factor, callers,
+                            {signals, guardian.process()}, say);
+  const auto status = supervisor.run();
+  const bool has_exited = status && WIFEXITED(*status);
+  if (has_exited) supervisor.finish(WEXITSTATUS(*status));
+  ProcessTree(guardian.process()).kill_all();
+  if (!status) return 0;
+  if (has_exited) return WEXITSTATUS(*status);
+  return -WTERMSIG(*status);
+}
+
 }  // namespace
+
+int supervise_as_is(const std::vector<std::string>& command, const std::string& library,
+                    const Say& say) {
+  const os::FileDescriptor signals = catch_signals();
+  os::adopt_orphans();
+  const std::string folder = make_private_folder();
+  if (folder.empty())
+    return fail(say, 3, std::string("cannot create a private folder: ") + std::strerror(errno));
+  int code = 0;
+  {
+    Guardian guardian(folder, "");
+    if (!guardian.is_there()) return fail(say, 3, "cannot start the clean-up process");
+    code = run_as_is(command, library, folder, guardian, signals, say);
+  }
+  if (code >= 0) return code;
+  ::signal(-code, SIG_DFL);
+  ::prctl(PR_SET_DUMPABLE, 0);  // the program has left its core file
+  ::raise(-code);
+  return 128 - code;
+}
 
 int supervise(const Settings& settings, const Say& say) {
   os::FileDescriptor signals = catch_signals();

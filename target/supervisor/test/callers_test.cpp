@@ -69,6 +69,19 @@ TEST_F(CallersTest, AnswersTheCallerOfTheRequest) {
   EXPECT_FALSE(second.receive(Duration(0)));
 }
 
+TEST_F(CallersTest, SaysThatACallerHasGoneBeforeThatWasHeard) {
+  CallerId gone = 0;
+  {
+    LocalSocket caller = call();
+    ASSERT_TRUE(caller.send(link::Progress{ExecTime(Duration(1))}));
+    receive();
+    gone = heard_.messages.at(0).first;
+    EXPECT_TRUE(callers_.send(gone, link::Progress{}));
+  }
+  EXPECT_FALSE(callers_.send(gone, link::Progress{}));
+  EXPECT_FALSE(callers_.send(gone, link::Progress{})) << "and goes on to do so";
+}
+
 TEST_F(CallersTest, ReportsClosedConnectionsButNotDroppedOnes) {
   LocalSocket dropped = call();
   {

@@ -1,0 +1,281 @@
+#include "as_is_supervisor.h"
+
+#include <algorithm>
+#include <csignal>
+#include <utility>
+#include <variant>
+
+#include <sys/signalfd.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <tether/client/exec/clock_page.h>
+#include <tether/client/exec/group_events.h>
+#include <tether/client/simulated_vehicle.h>
+
+namespace tether::supervisor {
+namespace {
+
+using client::GroupEvent;
+using client::GroupPage;
+
+// Between two looks whether all wait [real time].
+constexpr Duration kShortestSlice = std::chrono::microseconds(30);
+constexpr Duration kLongestSlice = std::chrono::milliseconds(1);
+// While one of the program's threads computes, what has arrived is taken so often [ET].
+constexpr Duration kBetweenPulls = std::chrono::milliseconds(2);
+// Processes that have ended are looked for so often [real time].
+constexpr Duration kBetweenForgetting = std::chrono::milliseconds(10);
+// A thread that was told just before it waited is told again [real time].
+constexpr Duration kBetweenTellings = std::chrono::milliseconds(1);
+// Of a wait without a deadline; then it begins again.
+constexpr Duration kForEver = std::chrono::hours(1);
+
+link::Reply reply_of(std::uint64_t sequence, ExecTime at) {
+  link::Reply reply;
+  reply.sequence = sequence;
+  reply.resume_at = at;
+  return reply;
+}
+
+}  // namespace
+
+AsIsSupervisor::AsIsSupervisor(pid_t program, GroupPage& page,
+                               std::unique_ptr<client::Vehicle> vehicle, double factor,
+                               Callers& callers, const Own& own, Say say)
+    : program_(program),
+      page_(page),
+      vehicle_(std::move(vehicle)),
+      factor_(factor),
+      callers_(callers),
+      signals_(own.signals),
+      threads_(own.guardian),
+      say_(std::move(say)) {
+  publish();
+}
+
+std::optional<int> AsIsSupervisor::run() {
+  while (!is_over_) {
+    if (const auto status = reap()) return status;
+    take_signals();
+    hear();
+    if (!unheard_.empty()) continue;
+    if (is_pulling_) {
+      is_pulling_ = receive(Duration(0));
+      continue;
+    }
+    for (const Pull& pull : std::exchange(pulls_, {}))
+      callers_.send(pull.caller, reply_of(pull.sequence, page_.now()));
+    forget_processes();
+    wake_overdue();
+    if (!unheard_.empty()) continue;
+    // In this order: one of those that wait may have asked this process for something.
+    if (are_all_waiting() && !is_asked() && lead())
+      patience_ = Duration(0);
+    else
+      pull_now_and_then();
+  }
+  return std::nullopt;
+}
+
+void AsIsSupervisor::forget_processes() {
+  const Duration now = client::read_monotonic();
+  if (now - forgotten_at_ < kBetweenForgetting) return;
+  forgotten_at_ = now;
+  page_.forget_ended();
+}
+
+// Descendants whose own parent has ended are children of this process.
+std::optional<int> AsIsSupervisor::reap() {
+  for (;;) {
+    siginfo_t ended{};
+    if (::waitid(P_ALL, 0, &ended, WEXITED | WNOHANG | WNOWAIT) != 0 || ended.si_pid == 0)
+      return std::nullopt;
+    static_cast<void>(page_.used());  // its last computing
+    int status = 0;
+    ::waitpid(ended.si_pid, &status, 0);
+    if (ended.si_pid == program_) return status;
+  }
+}
+
+void AsIsSupervisor::take_signals() {
+  signalfd_siginfo info{};
+  while (::read(signals_.get(), &info, sizeof info) == static_cast<ssize_t>(sizeof info))
+    if (info.ssi_signo != SIGCHLD)
+      ::kill(-program_, interrupts_++ == 0 ? static_cast<int>(info.ssi_signo) : SIGKILL);
+}
+
+// --- the processes ------------------------------------------------------------------------------
+
+/// Until the first deadline, if one of the program's threads computes all the time.
+Duration AsIsSupervisor::slice() {
+  patience_ = std::clamp(patience_ + patience_ / 4, kShortestSlice, kLongestSlice);
+  const ExecTime first = page_.first_deadline();
+  if (!unheard_.empty() || first == GroupPage::kNever) return patience_;
+  const auto until_first = static_cast<double>((first - page_.now()).count()) / factor_;
+  return std::clamp(Duration(static_cast<std::int64_t>(until_first)), kShortestSlice, patience_);
+}
+
+std::vector<pollfd> AsIsSupervisor::ears() const {
+  std::vector<pollfd> entries;
+  entries.push_back({signals_.get(), POLLIN, 0});
+  callers_.add_to(entries);
+  return entries;
+}
+
+bool AsIsSupervisor::is_asked() const {
+  std::vector<pollfd> entries = ears();
+  return ::poll(entries.data(), entries.size(), 0) != 0;
+}
+
+void AsIsSupervisor::hear() {
+  std::vector<pollfd> entries = ears();
+  const timespec time{0, is_pulling_ && unheard_.empty() ? 0L : static_cast<long>(slice().count())};
+  if (::ppoll(entries.data(), entries.size(), &time, nullptr) <= 0) return;
+  patience_ = Duration(0);
+  callers_.receive(entries, {[this](CallerId caller, link::Message message) {
+                               on_message(caller, std::move(message));
+                             },
+                             [this](CallerId caller) { on_gone(caller); }});
+}
+
+void AsIsSupervisor::on_message(CallerId caller, link::Message message) {
+  if (const auto* hello = std::get_if<link::Hello>(&message)) {
+    if (hello->sut == client::kGroupEvents)
+      lines_[caller] = static_cast<pid_t>(hello->process);
+    else
+      callers_.send(
+          caller, link::Welcome{
+                      .catalogue = vehicle_->catalogue(), .start = {}, .peers = vehicle_->peers()});
+    return;
+  }
+  if (auto* request = std::get_if<link::Request>(&message))
+    return on_request(caller, std::move(*request));
+  if (const auto* annotation = std::get_if<link::Annotation>(&message)) {
+    static_cast<void>(vehicle_->annotate(annotation->topic, annotation->json));
+    return;
+  }
+  if (const auto heard = unheard_.find(caller); heard != unheard_.end()) unheard_.erase(heard);
+}
+
+// A receive asks for what has arrived, for all processes.
+void AsIsSupervisor::on_request(CallerId caller, link::Request request) {
+  if (std::holds_alternative<link::ReceiveMessage>(request.body)) {
+    pulls_.push_back({caller, request.sequence});
+    return pull();
+  }
+  auto reply = client::pass_on(*vehicle_, std::move(request.body));
+  if (!reply) {
+    callers_.send(caller, link::Refusal{link::Refusal::Reason::kRunEnded, reply.failure().message});
+    check(reply.failure());
+    return;
+  }
+  publish();
+  reply->sequence = request.sequence;
+  callers_.send(caller, *reply);
+}
+
+void AsIsSupervisor::on_gone(CallerId caller) {
+  lines_.erase(caller);
+  unheard_.erase(caller);
+  std::erase_if(pulls_, [caller](const Pull& pull) { return pull.caller == caller; });
+}
+
+void AsIsSupervisor::tell(CallerId line, link::Reply event) {
+  if (callers_.send(line, event))
+    unheard_.insert(line);
+  else
+    on_gone(line);
+}
+
+void AsIsSupervisor::wake_overdue() {
+  const ExecTime now = page_.now();
+  if (page_.first_deadline() > now) return;
+  const Duration real = client::read_monotonic();
+  for (const auto& [line, process] : std::map(lines_))
+    if (page_.tell_overdue(process, now, real - kBetweenTellings, real))
+      tell(line, reply_of(static_cast<std::uint64_t>(GroupEvent::kDue), now));
+}
+
+// --- the coordinator ----------------------------------------------------------------------------
+
+/// False: the run is over, or cannot go on.
+bool AsIsSupervisor::check(const Failure& failure) {
+  if (failure.kind == Failure::Kind::kNothingYet || failure.kind == Failure::Kind::kInvalid)
+    return true;
+  if (failure.kind != Failure::Kind::kRunEnded) say_(failure.message);
+  is_over_ = true;
+  return false;
+}
+
+void AsIsSupervisor::publish() {
+  const Duration used = page_.used();
+  page_.publish(vehicle_->now(), used, factor_);
+}
+
+/// Whether anything came.
+bool AsIsSupervisor::receive(Duration timeout) {
+  const auto& sensors = vehicle_->catalogue().sensors;
+  std::uint64_t wanted = 0;
+  for (const auto& process : page_.processes())
+    if (process.id > 0) wanted |= process.sensors;
+  std::vector<std::string_view> names;
+  for (std::size_t i = 0; i < sensors.size() && i < 64; ++i)
+    if ((wanted >> i & 1) != 0) names.emplace_back(sensors[i].name);
+  const auto received = vehicle_->receive_or_measure(timeout, names);
+  publish();
+  if (!received && !check(received.failure())) return false;
+  if (received) deliver(received);
+  return received.ok();
+}
+
+void AsIsSupervisor::deliver(const Result<std::optional<client::RadioMessage>>& received) {
+  const bool is_message = received->has_value();
+  link::Reply event = reply_of(
+      static_cast<std::uint64_t>(is_message ? GroupEvent::kMessage : GroupEvent::kMeasured),
+      vehicle_->now());
+  if (is_message) {
+    const client::RadioMessage& message = **received;
+    event.message = {message.from, message.sent_at, message.arrived_at, message.bytes};
+  }
+  for (const auto& [line, process] : std::map(lines_))
+    for (const auto& one : page_.processes())
+      if (one.id == process && (is_message ? one.listens.load() : one.sensors != 0))
+        tell(line, event);
+}
+
+// One by one: a measurement stays until its process has read it.
+void AsIsSupervisor::pull() {
+  pulled_at_ = page_.now();
+  is_pulling_ = true;
+}
+
+void AsIsSupervisor::pull_now_and_then() {
+  const bool is_fed = std::ranges::any_of(page_.processes(), [](const GroupPage::Process& one) {
+    return one.id > 0 && (one.listens || one.sensors != 0);
+  });
+  if (is_fed && page_.now() - pulled_at_ >= kBetweenPulls) pull();
+}
+
+// While one computes, their CPU time grows: then there is no need to look closer.
+bool AsIsSupervisor::are_all_waiting() {
+  const Duration used = page_.used();
+  return std::exchange(used_, used) == used && threads_.are_all_waiting(page_);
+}
+
+/// Lets ET go on to what comes first.
+bool AsIsSupervisor::lead() {
+  const ExecTime first = page_.first_deadline(), now = vehicle_->now();
+  if (first <= now) return false;
+  receive(first == GroupPage::kNever ? kForEver : first - now);
+  if (!is_over_) wake_overdue();
+  pulled_at_ = page_.now();
+  return true;
+}
+
+void AsIsSupervisor::finish(int exit_code) {
+  static_cast<void>(vehicle_->finish(
+      exit_code == 0, "the program ended with exit code " + std::to_string(exit_code), "{}"));
+}
+
+}  // namespace tether::supervisor

@@ -1,0 +1,91 @@
+#pragma once
+
+#include "callers.h"
+#include "thread_files.h"
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <poll.h>
+#include <sys/types.h>
+
+#include <tether/client/exec/group_page.h>
+#include <tether/client/vehicle.h>
+#include <tether/supervisor/supervise.h>
+
+namespace tether::supervisor {
+
+/// The loop around the processes of one program that know nothing of Tether: one thread, on the one
+/// core that they share. Each of them registers its waits in the page, and calls the UAV through
+/// this process.
+///
+/// When all of them wait, it asks the coordinator for what comes first: a message of the flight
+/// controller, a measurement, or the first deadline; ET goes on from there. It tells the processes
+/// that wait for that, and waits until they have heard it: what they wake is at work then.
+class AsIsSupervisor {
+ public:
+  /// What this process has besides the program.
+  struct Own {
+    const os::FileDescriptor& signals;  // a signalfd
+    pid_t guardian;                     // a child
+  };
+  /// `program`: a child of this process. The references must outlive it.
+  AsIsSupervisor(pid_t program, client::GroupPage& page, std::unique_ptr<client::Vehicle> vehicle,
+                 double factor, Callers& callers, const Own& own, Say say);
+
+  /// Until the program has ended. Its status as waitpid() gives it; none: the run is over.
+  std::optional<int> run();
+  /// The program has ended with this code.
+  void finish(int exit_code);
+
+ private:
+  struct Pull {
+    CallerId caller;
+    std::uint64_t sequence;
+  };
+  std::optional<int> reap();
+  void take_signals();
+  void forget_processes();
+  std::vector<pollfd> ears() const;
+  bool is_asked() const;
+  void hear();
+  void on_message(CallerId caller, link::Message message);
+  void on_request(CallerId caller, link::Request request);
+  void on_gone(CallerId caller);
+  void tell(CallerId line, link::Reply event);
+  void deliver(const Result<std::optional<client::RadioMessage>>& received);
+  bool receive(Duration timeout);
+  void pull();
+  void pull_now_and_then();
+  void wake_overdue();
+  bool are_all_waiting();
+  bool lead();
+  Duration slice();
+  void publish();
+  bool check(const Failure& failure);
+
+  pid_t program_;
+  client::GroupPage& page_;
+  std::unique_ptr<client::Vehicle> vehicle_;
+  double factor_;
+  Callers& callers_;
+  const os::FileDescriptor& signals_;
+  ThreadFiles threads_;
+  Say say_;
+  std::map<CallerId, pid_t> lines_;  // to the processes, for what they wait for
+  std::multiset<CallerId> unheard_;  // what they were told
+  std::vector<Pull> pulls_;          // to be answered when all have heard
+  bool is_over_ = false;
+  int interrupts_ = 0;
+  bool is_pulling_ = false;
+  Duration patience_{0}, used_{-1}, forgotten_at_{0};
+  ExecTime pulled_at_{};
+};
+
+}  // namespace tether::supervisor
