@@ -38,6 +38,7 @@ Examples:
   tether-exec ./my-uav-program --config flight.yaml
   tether-exec --freezer signal --verbose python3 fly.py
   tether-exec --as-is python3 companion.py
+  tether-exec --as-is --all-processes ./start_ros.sh
   tether-exec --group /tmp/board --members 2 &
   TETHER_UAV=uav1 tether-exec --group /tmp/board ./my-uav-program
 
@@ -70,11 +71,16 @@ struct Row {
   const char* needs = "";  ///< what is missing without a value
 };
 
-std::vector<Row> rows_of(supervisor::Settings& settings, bool& is_as_is) {
+std::vector<Row> rows_of(Parsed& parsed) {
+  supervisor::Settings& settings = parsed.settings;
   return {{{"--as-is",
             "Fly a program that knows nothing of Tether: its clocks and waits follow its execution "
             "time, and its UDP ports are those of the flight controller",
-            &is_as_is}},
+            &parsed.is_as_is}},
+          {{"--all-processes",
+            "With --as-is: so do all processes that the program starts, which share one core of "
+            "this machine",
+            &parsed.has_all_processes}},
           {{"--freezer auto|cgroup|signal",
             "How to stop the program: cgroup (with a cgroup v2), signal (with SIGSTOP) or auto "
             "(cgroup if the system allows it, otherwise signal) [auto]",
@@ -131,7 +137,7 @@ std::string conflict(const supervisor::Settings& settings, bool has_own_options)
 Parsed parse_command_line(const std::vector<std::string>& arguments) {
   Parsed parsed;
   bool has_own_options = false;  // of a process that stops programs
-  const std::vector<Row> rows = rows_of(parsed.settings, parsed.is_as_is);
+  const std::vector<Row> rows = rows_of(parsed);
   auto at = arguments.begin();
   for (; at != arguments.end() && at->starts_with('-'); ++at) {
     const std::string option = *at;
@@ -165,6 +171,7 @@ Parsed parse_command_line(const std::vector<std::string>& arguments) {
   }
   parsed.settings.command.assign(at, arguments.end());
   std::string wrong = conflict(parsed.settings, has_own_options);
+  if (parsed.has_all_processes && !parsed.is_as_is) wrong = "--all-processes needs --as-is";
   if (parsed.is_as_is && (has_own_options || !parsed.settings.group.empty()))
     wrong = "--as-is starts a program that nobody stops: use it without other options";
   if (!wrong.empty()) return wrong_use(wrong);

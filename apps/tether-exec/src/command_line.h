@@ -18,7 +18,8 @@ struct Notice {
 struct Parsed {
   supervisor::Settings settings;
   std::optional<Notice> notice;
-  bool is_as_is = false;  ///< its command knows nothing of Tether (as_is.h)
+  bool is_as_is = false;           ///< its command knows nothing of Tether (as_is.h)
+  bool has_all_processes = false;  ///< as_is, with all processes that it starts
 };
 /// @param arguments without the program's name.
 Parsed parse_command_line(const std::vector<std::string>& arguments);

@@ -5,6 +5,7 @@
 #include <exception>
 
 #include <tether/supervisor/supervise.h>
+#include <tether/supervisor/supervise_as_is.h>
 
 namespace tether::exec {
 namespace {
@@ -19,6 +20,8 @@ int run(const std::vector<std::string>& arguments) {
     std::fputs(parsed.notice->text.c_str(), parsed.notice->exit_code == 0 ? stdout : stderr);
     return parsed.notice->exit_code;
   }
+  if (parsed.has_all_processes)
+    return supervisor::supervise_as_is(parsed.settings.command, library_as_is(), say);
   if (parsed.is_as_is) {
     say(become_as_is(parsed.settings.command));
     return 2;

@@ -38,6 +38,14 @@ TEST(CommandLine, HasTheGroupOfSeveralPrograms) {
   EXPECT_THAT(member.settings.command, ElementsAre("fly", "--members"));
 }
 
+TEST(CommandLine, HasProgramsThatFlyAsTheyAre) {
+  const Parsed one = parse_command_line({"--as-is", "fly"});
+  EXPECT_TRUE(one.is_as_is && !one.has_all_processes && !one.notice);
+  const Parsed all = parse_command_line({"--as-is", "--all-processes", "fly", "--as-is"});
+  EXPECT_TRUE(all.is_as_is && all.has_all_processes && !all.notice);
+  EXPECT_THAT(all.settings.command, ElementsAre("fly", "--as-is"));
+}
+
 TEST(CommandLine, PrintsHelpVersionAndErrors) {
   struct Case {
     std::vector<std::string> arguments;
@@ -59,7 +67,9 @@ TEST(CommandLine, PrintsHelpVersionAndErrors) {
                         {{"--group", "s", "--members", "2x"}, 2, "'2x'"},
                         {{"--group", "s", "--members=2", "fly"}, 2, "--group"},
                         {{"--verbose", "--group=s", "fly"}, 2, "--verbose"},
-                        {{"--freezer=auto", "--group=s", "fly"}, 2, "--freezer"}};
+                        {{"--freezer=auto", "--group=s", "fly"}, 2, "--freezer"},
+                        {{"--all-processes", "fly"}, 2, "--as-is"},
+                        {{"--as-is", "--all-processes"}, 2, "command"}};
   for (const Case& c : cases) {
     const Parsed parsed = parse_command_line(c.arguments);
     ASSERT_TRUE(parsed.notice) << c.text;

@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <set>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <utility>
 
@@ -30,6 +31,8 @@ namespace {
 constexpr Duration kShortestSlice = std::chrono::microseconds(500);
 constexpr Duration kLongestSlice = std::chrono::milliseconds(5);
 constexpr Duration kLongestUnwoken = std::chrono::milliseconds(1);
+// One that tether-exec wakes looks again after so long, in case it does not hear that.
+constexpr Duration kLongestToldSlice = std::chrono::milliseconds(200);
 // A thread that waits beside one that computes looks so often for what has arrived [ET].
 constexpr Duration kBetweenLooks = std::chrono::milliseconds(2);
 // After so long it is told that nothing was used [ET].
@@ -72,8 +75,46 @@ thread_local int Inside::depth_ = 0;
 thread_local Unpaid* Unpaid::current_ = nullptr;
 std::atomic<Agent*> Agent::instance_ = nullptr;
 
+Agent::Agent(std::unique_ptr<GroupMember> group)
+    : group_(std::move(group)),
+      group_source_(client::make_group_source(group_->page(), 1.0)),
+      source_(group_source_.get()),
+      factor_(1.0),
+      process_(::getpid()) {
+  Unpaid::clock_stands_in_calls = false;
+}
+
+void Agent::start_in_group() {
+  if (auto member = GroupMember::of_environment())
+    instance_.store(new Agent(std::move(member)), std::memory_order_release);
+}
+
+void Agent::leave() {
+  const Inside inside;
+  const Agent* const parent = instance_.exchange(nullptr);
+  if (parent == nullptr || !parent->group_) return;
+  if (auto member = GroupMember::of_child(*parent->group_))
+    instance_.store(new Agent(std::move(member)), std::memory_order_release);
+}
+
+client::Vehicle& Agent::vehicle() {
+  if (group_)
+    std::call_once(connects_, [this] {
+      client::ConnectOptions options;
+      options.exec_socket = group_->socket();
+      options.sut_name = program_name();
+      auto vehicle = client::connect(std::move(options));
+      if (!vehicle) end(vehicle.failure());
+      vehicle_ = std::move(*vehicle);
+      add_sensors();
+    });
+  return *vehicle_;
+}
+
 void Agent::start() {
   const Inside inside;
+  if (const char* kind = std::getenv("TETHER_AS_IS"); kind && std::string_view(kind) == "group")
+    return start_in_group();
   auto options = client::options_from_environment();
   if (!options) return say(options.failure().message + "; the program runs by itself");
   options->sut_name = program_name();
@@ -141,7 +182,15 @@ void Agent::take_measured() {
   port_.deliver_of_receiver({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
 }
 
+// For all processes; this one hears of it on its line before the call returns.
 void Agent::take_arrived() {
+  if (group_) {
+    tell_needs();
+    group_->listen([this](auto event, const auto& reply) { handle(event, reply); });
+    const auto nothing = vehicle().receive(Duration(0));
+    if (!nothing && nothing.failure().kind != Failure::Kind::kNothingYet) end(nothing.failure());
+    return;
+  }
   with_cameras([this](CameraFiles&) {
     while (receive_until(now())) {
     }
@@ -153,7 +202,8 @@ void Agent::add_sensors() {
   for (const uav::SensorDescription& sensor : vehicle_->catalogue().sensors) {
     if (receiver_.empty() && sensor.rate_hz > 0.0 &&
         std::holds_alternative<uav::NavSatProperties>(sensor.properties))
-      receiver_ = sensor.name;
+      receiver_ = sensor.name,
+      receiver_bit_ = std::uint64_t{1} << (&sensor - vehicle_->catalogue().sensors.data());
     const auto kind = sensor.camera_kind();
     if (!kind || !uav::has_color(*kind) || sensor.rate_hz <= 0.0) continue;
     cameras_.add(sensor, {.take = [this, name = sensor.name] { return take_image(name); },
@@ -191,7 +241,8 @@ void Agent::copy(int fd, int copy) {
 
 bool Agent::send(std::span<const std::uint8_t> bytes) {
   const std::lock_guard leading(leading_);
-  const Status sent = vehicle_->send(link::kAutopilot, bytes);
+  const Unpaid unpaid(*source_);
+  const Status sent = Unpaid::in_call([&] { return vehicle().send(link::kAutopilot, bytes); });
   if (sent) return true;
   if (sent.failure().kind != Failure::Kind::kInvalid) end(sent.failure());
   return false;
@@ -202,8 +253,8 @@ void Agent::send_stream(std::span<const std::uint8_t> bytes) {
   stream_.add(bytes, [this](std::span<const std::uint8_t> frame) { send(frame); });
 }
 
-bool Agent::has_controller() const {
-  return std::ranges::count(vehicle_->peers(), link::kAutopilot) > 0;
+bool Agent::has_controller() {
+  return std::ranges::count(vehicle().peers(), link::kAutopilot) > 0;
 }
 
 /// Of one wait: ET when it looked last, and how long it waited since.
@@ -237,7 +288,7 @@ bool Agent::lead() {
   {
     const std::lock_guard lock(waits_mutex_);
     is_empty = waits_.empty();
-    for (const auto& [deadline, wake] : waits_)
+    for (const auto& [deadline, wake, interrupt, shared] : waits_)
       if (deadline) earliest = std::min(earliest.value_or(*deadline), *deadline);
   }
   if (is_empty || (earliest && *earliest <= now())) return false;
@@ -250,18 +301,60 @@ bool Agent::lead() {
 void Agent::wake_due() {
   constexpr std::uint64_t kOnce = 1;
   const std::lock_guard lock(waits_mutex_);
-  for (const auto& [deadline, wake] : waits_)
-    if (deadline && *deadline <= now())
-      static_cast<void>(TETHER_REAL(write)(wake, &kOnce, sizeof kOnce));
+  for (const Wait& wait : waits_) {
+    if (!wait.deadline || *wait.deadline > now()) continue;
+    static_cast<void>(TETHER_REAL(write)(wait.wake, &kOnce, sizeof kOnce));
+    if (group_ && wait.interrupt) wait.interrupt();
+  }
 }
 
-std::list<Agent::Wait>::iterator Agent::enter(std::optional<ExecTime> deadline) {
-  const int wake = wake_of_thread();
+std::list<Agent::Wait>::iterator Agent::enter(std::optional<ExecTime> deadline,
+                                              std::function<void()> interrupt) {
+  Wait wait{deadline, wake_of_thread(), std::move(interrupt)};
+  if (group_) {
+    group_->listen([this](auto event, const auto& reply) { handle(event, reply); });
+    tell_needs();
+    if (deadline) wait.shared = group_->page().begin_wait(process_, *deadline);
+  }
   const std::lock_guard lock(waits_mutex_);
-  return waits_.insert(waits_.end(), {deadline, wake});
+  return waits_.insert(waits_.end(), std::move(wait));
+}
+
+void Agent::tell_needs() {
+  if (!group_) return;
+  client::GroupPage::Process& process = group_->process();
+  process.timer = timers_.next().value_or(client::GroupPage::kNever);
+  process.listens = port_.is_any();
+  process.sensors = rooms_ | (port_.has_receiver() ? receiver_bit_.load() : 0);
+}
+
+// With leading_.
+void Agent::tell_rooms() {
+  if (!group_) return;
+  const auto& sensors = vehicle_->catalogue().sensors;
+  std::uint64_t rooms = 0;
+  for (const Camera& camera : cameras_.cameras())
+    if (camera.has_room())
+      rooms |= std::uint64_t{1} << std::ranges::distance(
+                   sensors.begin(),
+                   std::ranges::find(sensors, camera.sensor(), &uav::SensorDescription::name));
+  rooms_ = rooms;
+  tell_needs();
+}
+
+// On the thread that hears of it. What that wakes is at work when tether-exec hears that it was
+// heard.
+void Agent::handle(client::GroupEvent event, const link::Reply& reply) {
+  const Unpaid unpaid(*source_);
+  if (event == client::GroupEvent::kMessage && reply.message) port_.deliver(reply.message->bytes);
+  if (event == client::GroupEvent::kMeasured)
+    with_cameras([this](CameraFiles&) { take_measured(); });
+  fire_timers();
+  wake_due();
 }
 
 void Agent::leave(std::list<Wait>::iterator wait) {
+  client::GroupPage::end_wait(wait->shared);
   const std::lock_guard lock(waits_mutex_);
   waits_.erase(wait);
 }
@@ -282,6 +375,10 @@ bool Agent::wait(std::optional<ExecTime> deadline, const std::function<bool()>& 
     fire_timers();
     if ((ready = is_ready()) || (deadline && now() >= *deadline)) break;
     Unpaid::settle();
+    if (group_) {
+      block(kLongestToldSlice, own->wake);
+      continue;
+    }
     if (leads && lead()) continue;
     if (leads && !is_alone) call_leader();
     leads = is_alone;
@@ -295,17 +392,20 @@ bool Agent::wait(std::optional<ExecTime> deadline, const std::function<bool()>& 
   return ready;
 }
 
-bool Agent::wait_for_thread(ExecTime deadline, const std::function<bool(Duration)>& block) {
+bool Agent::wait_for_thread(ExecTime deadline, const std::function<bool(Duration)>& block,
+                            const std::function<void()>& interrupt) {
   const Unpaid unpaid(*source_);
-  if (block(Duration(0))) return true;
-  const auto own = enter(deadline);
-  call_leader();
+  // Of a group, a thread must not be found waiting, however shortly, before its deadline is known.
+  if (!group_ && block(Duration(0))) return true;
+  const auto own = enter(deadline, interrupt);
+  if (!group_) call_leader();
   Patience patience{.seen = now()};
-  bool is_given = false;
+  bool is_given = group_ && block(Duration(0));
   while (!is_given && now() < deadline) {
     Unpaid::settle();
-    // Nobody can wake it at its deadline.
-    is_given = block(std::min(kLongestUnwoken, slice(deadline, patience)));
+    // Alone, nobody can wake it at its deadline.
+    is_given =
+        block(group_ ? kLongestToldSlice : std::min(kLongestUnwoken, slice(deadline, patience)));
   }
   leave(own);
   return is_given;
@@ -377,11 +477,13 @@ void Agent::tell_gap(const char* what) {
     return;
   const std::lock_guard leading(leading_);
   static_cast<void>(
-      vehicle_->annotate("as_is", std::string("{\"not_covered\": \"") + what + "\"}"));
+      vehicle().annotate("as_is", std::string("{\"not_covered\": \"") + what + "\"}"));
 }
 
 void Agent::finish(int exit_code) {
   if (instance_.exchange(nullptr) == nullptr) return;
+  // What it has computed is known from now on, however it ends.
+  if (group_) return static_cast<void>(group_->page().used());
   const std::lock_guard leading(leading_);
   static_cast<void>(vehicle_->finish(
       exit_code == 0, "the program ended with exit code " + std::to_string(exit_code), "{}"));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "camera_files.h"
+#include "group_member.h"
 #include "port.h"
 #include "serial.h"
 #include "threads.h"
@@ -40,6 +41,9 @@ class Agent {
   struct Wait {
     std::optional<ExecTime> deadline;
     int wake;  // an eventfd of its thread
+    /// Wakes a thread that waits for another one, in which case there is no descriptor.
+    std::function<void()> interrupt{};
+    client::GroupPage::Wait* shared = nullptr;
   };
 
   /// nullptr: this process is not under test, or no more.
@@ -47,10 +51,17 @@ class Agent {
   /// Connects, as the environment says. Ends the process, with a line, if it cannot.
   static void start();
 
-  /// In a forked child: it is not under test, and has the machine's clocks.
-  static void leave() { instance_.store(nullptr); }
+  /// In a forked child: it is not under test, and has the machine's clocks; or it is one more
+  /// process of the program.
+  static void leave();
 
-  ExecTime now() const { return vehicle_->now(); }
+  ExecTime now() const { return group_ ? group_->page().now() : vehicle_->now(); }
+  /// Of a group: there will be one more thread of the program. nullptr: nobody has to know.
+  client::GroupPage::Thread* thread_begins() const {
+    return group_ ? group_->page().begin_thread(process_, client::GroupPage::kBegins) : nullptr;
+  }
+  /// Whether the program's processes share one execution time.
+  bool is_in_group() const { return group_ != nullptr; }
 
   /// Waits until `is_ready`, or the deadline (none: for ever). `block` waits for the same in real
   /// time, for at most so long, and if it can until the descriptor can be read. False: the deadline
@@ -59,7 +70,9 @@ class Agent {
   bool wait(std::optional<ExecTime> deadline, const std::function<bool()>& is_ready,
             const Block& block);
   /// The same for what another thread of the program gives; `block` returns whether it has.
-  bool wait_for_thread(ExecTime deadline, const std::function<bool(Duration)>& block);
+  /// `interrupt` ends `block`, or does nothing if it has not begun.
+  bool wait_for_thread(ExecTime deadline, const std::function<bool(Duration)>& block,
+                       const std::function<void()>& interrupt);
   void sleep_until(ExecTime deadline);
   /// Puts what has arrived up to now into the program's sockets.
   void take_arrived();
@@ -70,17 +83,24 @@ class Agent {
 
   /// The same, from a stream of frames.
   void send_stream(std::span<const std::uint8_t> bytes);
-  bool has_controller() const;
+  bool has_controller();
   /// Of satellite navigation, with a rate of its own.
-  bool has_receiver() const { return !receiver_.empty(); }
+  bool has_receiver() {
+    vehicle();
+    return !receiver_.empty();
+  }
 
   bool is_camera(int fd) const { return cameras_.is_ours(fd); }
-  bool has_camera(unsigned number) { return number < cameras_.cameras().size(); }
+  bool has_camera(unsigned number) {
+    vehicle();
+    return number < cameras_.cameras().size();
+  }
   /// What the functions of CameraFiles do, one at a time.
   template <class Call>
   auto with_cameras(Call call) {
     const std::lock_guard leading(leading_);
     const Unpaid unpaid(*source_);
+    const ToldNeeds told(*this);
     return call(cameras_);
   }
   /// Whether something can arrive for the program.
@@ -88,7 +108,13 @@ class Agent {
 
   Timers& timers() { return timers_; }
   /// Those of the timers that are due up to now. False: none is.
-  bool fire_timers() { return timers_.next() && timers_.fire(now()); }
+  bool fire_timers() {
+    const bool is_any = timers_.next() && timers_.fire(now());
+    if (is_any) tell_needs();
+    return is_any;
+  }
+  /// To tether-exec, if that leads for all processes: what this one waits for besides deadlines.
+  void tell_needs();
 
   /// A descriptor is closed, or there is another one of the same.
   void forget(int fd);
@@ -109,6 +135,19 @@ class Agent {
       : vehicle_(std::move(vehicle)), source_(&source), factor_(source.clock().factor) {
     add_sensors();
   }
+  explicit Agent(std::unique_ptr<GroupMember> group);
+  static void start_in_group();
+  /// Of a group, connected when it is used first.
+  client::Vehicle& vehicle();
+  void handle(client::GroupEvent event, const link::Reply& reply);
+  void tell_rooms();
+  struct ToldNeeds {
+    explicit ToldNeeds(Agent& agent) : agent_(agent) {}
+    ~ToldNeeds() { agent_.tell_rooms(); }
+    ToldNeeds(const ToldNeeds&) = delete;
+    ToldNeeds& operator=(const ToldNeeds&) = delete;
+    Agent& agent_;
+  };
   /// Takes the next message, or lets ET reach that instant.
   bool receive_until(std::optional<ExecTime> until);
   void tell_if_idle();
@@ -119,7 +158,8 @@ class Agent {
   std::optional<uav::CameraSample> take_image(const std::string& sensor);
   void drop(const std::string& sensor, bool keeps_later_ones);
   [[noreturn]] void lead_for_others();
-  std::list<Wait>::iterator enter(std::optional<ExecTime> deadline);
+  std::list<Wait>::iterator enter(std::optional<ExecTime> deadline,
+                                  std::function<void()> interrupt = {});
   void leave(std::list<Wait>::iterator wait);
   void wake_due();
   Duration slice(std::optional<ExecTime> deadline, Patience& patience) const;
@@ -128,8 +168,13 @@ class Agent {
 
   static std::atomic<Agent*> instance_;
 
+  std::unique_ptr<GroupMember> group_;  // none: the program has one process
+  std::unique_ptr<client::TimeSource> group_source_;
+  std::once_flag connects_;
+  // Bits of sensors: cameras that have room, and the receiver.
+  std::atomic<std::uint64_t> rooms_{0}, receiver_bit_{0};
   std::unique_ptr<client::Vehicle> vehicle_;
-  client::TimeSource* source_;  // of the vehicle
+  client::TimeSource* source_;  // of the vehicle, or the group
   double factor_;               // ET per CPU time, or wall time
   bool is_known_to_be_used_ = false;
   Port port_;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <fcntl.h>
+#include <netinet/tcp.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <sys/time.h>
@@ -24,6 +25,18 @@ namespace {
 Agent* agent_of(int socket) {
   Agent* const agent = tether::as_is::agent();
   return agent != nullptr && agent->port().is_ours(socket) ? agent : nullptr;
+}
+
+/// As agent_of(), and of other sockets, whose timeout is that of the kernel otherwise.
+Agent* reader_of(int socket) {
+  Agent* const agent = tether::as_is::agent();
+  if (agent == nullptr || agent->port().is_ours(socket)) return agent;
+  timeval limit{};
+  socklen_t size = sizeof limit;
+  const bool has_timeout = agent->is_in_group() &&
+                           ::getsockopt(socket, SOL_SOCKET, SO_RCVTIMEO, &limit, &size) == 0 &&
+                           (limit.tv_sec > 0 || limit.tv_usec > 0);
+  return has_timeout ? agent : nullptr;
 }
 
 constexpr Duration kTenthOfSecond = std::chrono::milliseconds(100);
@@ -105,7 +118,8 @@ ssize_t send_bytes(Agent& agent, int socket, const void* bytes, std::size_t size
 
 /// Whether a call may wait for another computer or program: then the caller is outside meanwhile.
 bool is_outside(int socket) {
-  if (agent() == nullptr) return false;
+  // Of a group, nobody outside is known.
+  if (agent() == nullptr || agent()->is_in_group()) return false;
   int family = 0;
   socklen_t size = sizeof family;
   return ::getsockopt(socket, SOL_SOCKET, SO_DOMAIN, &family, &size) == 0 &&
@@ -116,6 +130,17 @@ auto call_outside(int socket, Call call) {
   if (!is_outside(socket)) return call();
   const Threads::Outside outside;
   return call();
+}
+
+/// What is sent on a connection goes out at once: the kernel would hold small packets back by its
+/// own clock, until those before have been acknowledged. @return socket
+int send_at_once(int socket) {
+  const Agent* const agent = tether::as_is::agent();
+  if (agent == nullptr || !agent->is_in_group() || socket < 0) return socket;
+  const KeepErrno keep;
+  const int on = 1;
+  ::setsockopt(socket, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+  return socket;
 }
 
 /// A descriptor ends.
@@ -174,10 +199,21 @@ TETHER_IN_PLACE int bind(int socket, const sockaddr* address, socklen_t size) {
 
 TETHER_IN_PLACE int connect(int socket, const sockaddr* address, socklen_t size) {
   Agent* const agent = agent_for(socket, address, size);
-  if (agent == nullptr || address == nullptr)
+  if (agent == nullptr || address == nullptr) {
+    send_at_once(socket);
     return call_outside(socket, [&] { return TETHER_REAL(connect)(socket, address, size); });
+  }
   const sockaddr_in& own = agent->port().own();
   return TETHER_REAL(connect)(socket, reinterpret_cast<const sockaddr*>(&own), sizeof own);
+}
+
+TETHER_IN_PLACE int accept(int socket, sockaddr* __restrict address, socklen_t* __restrict size) {
+  return send_at_once(TETHER_REAL(accept)(socket, address, size));
+}
+
+TETHER_IN_PLACE int accept4(int socket, sockaddr* __restrict address, socklen_t* __restrict size,
+                            int flags) {
+  return send_at_once(TETHER_REAL(accept4)(socket, address, size, flags));
 }
 
 TETHER_IN_PLACE int getsockname(int socket, sockaddr* __restrict address,
@@ -202,7 +238,7 @@ TETHER_IN_PLACE int close(int fd) {
 
 TETHER_IN_PLACE ssize_t recvfrom(int socket, void* __restrict bytes, size_t size, int flags,
                                  sockaddr* __restrict from, socklen_t* __restrict from_size) {
-  Agent* const agent = agent_of(socket);
+  Agent* const agent = reader_of(socket);
   if (agent == nullptr)
     return call_outside(
         socket, [&] { return TETHER_REAL(recvfrom)(socket, bytes, size, flags, from, from_size); });
@@ -224,14 +260,14 @@ TETHER_IN_PLACE ssize_t read(int fd, void* bytes, size_t size) {
   }
   if (Agent* const any = tether::as_is::agent(); any && any->timers().is_ours(fd))
     return read_when_ready(*any, fd, 0, [&] { return any->timers().take(fd, bytes, size); });
-  Agent* const agent = agent_of(fd);
+  Agent* const agent = reader_of(fd);
   if (agent == nullptr) return call_outside(fd, [&] { return TETHER_REAL(read)(fd, bytes, size); });
   if (agent->port().is_serial(fd)) return read_serial(*agent, fd, bytes, size);
   return recvfrom(fd, bytes, size, 0, nullptr, nullptr);
 }
 
 TETHER_IN_PLACE ssize_t recvmsg(int socket, msghdr* message, int flags) {
-  Agent* const agent = agent_of(socket);
+  Agent* const agent = reader_of(socket);
   if (agent == nullptr)
     return call_outside(socket, [&] { return TETHER_REAL(recvmsg)(socket, message, flags); });
   const ssize_t got = read_when_ready(*agent, socket, flags, [&] {

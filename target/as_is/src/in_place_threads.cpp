@@ -3,7 +3,9 @@
 #include "clocks.h"
 #include "in_place.h"
 
+#include <atomic>
 #include <cerrno>
+#include <csignal>
 #include <cstdarg>
 #include <cstring>
 #include <memory>
@@ -21,12 +23,20 @@ struct Begin {
   void* (*function)(void*);
   void* argument;
   bool is_inside;  // a thread of this library
+  client::GroupPage::Thread* shared = nullptr;
 };
 
 // What a thread of the program leaves behind when it ends, however it does.
 struct OfProgram {
-  OfProgram() = default;
-  ~OfProgram() { Threads::ended(); }
+  explicit OfProgram(client::GroupPage::Thread* thread) : shared(thread) {}
+  ~OfProgram() {
+    client::GroupPage::end_thread(shared);
+    Threads::ended();
+  }
+  OfProgram(const OfProgram&) = delete;
+  OfProgram& operator=(const OfProgram&) = delete;
+
+  client::GroupPage::Thread* shared;
 };
 
 void* begin(void* argument) {
@@ -36,26 +46,48 @@ void* begin(void* argument) {
     const Inside inside;
     return copy.function(copy.argument);
   }
-  thread_local const OfProgram kOfProgram;
+  if (copy.shared != nullptr) copy.shared->id = ::gettid();
+  thread_local const OfProgram kOfProgram(copy.shared);
   static_cast<void>(&kOfProgram);
   return copy.function(copy.argument);
 }
 
+// A signal that programs do not use. One that blocks it is late by a slice.
+void interrupt_thread(pthread_t thread) {
+  static const int kSignal = [] {
+    const int signal = SIGRTMAX - 4;
+    struct sigaction action {};
+    action.sa_handler = [](int) {};
+    ::sigaction(signal, &action, nullptr);
+    return signal;
+  }();
+  ::pthread_kill(thread, kSignal);
+}
+
 /// `take(slice)`: the real wait, for so long in real time; ETIMEDOUT: not yet.
+/// `condition`: what it waits for; nullptr: a call that a signal interrupts.
 template <class Take>
-int wait_until(Agent& agent, clockid_t clock, const timespec* until, Take take) {
+int wait_until(Agent& agent, clockid_t clock, const timespec* until, Take take,
+               pthread_cond_t* condition = nullptr) {
   if (!duration_of(*until)) return EINVAL;
   const ExecTime deadline = et_of(clock, *until);
   int result = ETIMEDOUT;
+  std::atomic<bool> is_interrupted = false;
+  const auto interrupt = [&, thread = ::pthread_self()] {
+    if (condition != nullptr) return static_cast<void>(::pthread_cond_broadcast(condition));
+    is_interrupted = true;
+    interrupt_thread(thread);
+  };
   const auto block = [&](Duration slice) {
     timespec real{};
     TETHER_REAL(clock_gettime)(CLOCK_REALTIME, &real);
     const timespec end = to_timespec(duration_of(real).value_or(Duration(0)) + slice);
     result = take(&end);
+    if (result == EINTR && is_interrupted.exchange(false)) result = ETIMEDOUT;
     return result != ETIMEDOUT;
   };
   const Inside inside;
-  agent.wait_for_thread(deadline, block);
+  agent.wait_for_thread(deadline, block, interrupt);
   return result;
 }
 
@@ -67,9 +99,12 @@ clockid_t clock_of(const timespec& until) {
 
 int wait_for_condition(Agent& agent, pthread_cond_t* condition, pthread_mutex_t* mutex,
                        clockid_t clock, const timespec* until) {
-  return wait_until(agent, clock, until, [&](const timespec* end) {
-    return TETHER_REAL(pthread_cond_clockwait)(condition, mutex, CLOCK_REALTIME, end);
-  });
+  return wait_until(
+      agent, clock, until,
+      [&](const timespec* end) {
+        return TETHER_REAL(pthread_cond_clockwait)(condition, mutex, CLOCK_REALTIME, end);
+      },
+      condition);
 }
 
 int wait_for_semaphore(Agent& agent, sem_t* semaphore, clockid_t clock, const timespec* until) {
@@ -116,12 +151,16 @@ TETHER_IN_PLACE int pthread_create(pthread_t* __restrict thread,
                                    void* (*function)(void*), void* __restrict argument) {
   const bool is_inside = Inside::is();
   auto given = std::make_unique<Begin>(Begin{function, argument, is_inside});
+  Agent* const agent = tether::as_is::agent();
+  if (agent != nullptr) given->shared = agent->thread_begins();
   if (!is_inside) Threads::began();
   const int result = TETHER_REAL(pthread_create)(thread, attributes, begin, given.get());
   if (result == 0)
     static_cast<void>(given.release());
-  else if (!is_inside)
+  else if (!is_inside) {
+    tether::client::GroupPage::end_thread(given->shared);
     Threads::ended();
+  }
   return result;
 }
 

@@ -49,6 +49,7 @@ TETHER_IN_PLACE int timerfd_settime(int fd, int flags, const itimerspec* value, 
   const int kept = errno;
   const Inside inside;
   const int result = agent->timers().set(fd, flags, *value, old, agent->now());
+  agent->tell_needs();
   if (result == 0) errno = kept;
   return result;
 }

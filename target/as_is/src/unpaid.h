@@ -28,14 +28,15 @@ class Unpaid {
     current_->pause();
     current_->go_on();
   }
-  /// A call of the vehicle, in which the clock stands anyway.
+  /// A call of the vehicle, in which the clock stands anyway, unless there are other processes.
   template <class Call>
   static auto in_call(Call call) {
-    if (current_ != nullptr) current_->pause();
+    if (current_ != nullptr && clock_stands_in_calls) current_->pause();
     auto result = call();
-    if (current_ != nullptr) current_->go_on();
+    if (current_ != nullptr && clock_stands_in_calls) current_->go_on();
     return result;
   }
+  static inline bool clock_stands_in_calls = true;
 
  private:
   void go_on() { since_ = source_->counted_of_thread(); }
