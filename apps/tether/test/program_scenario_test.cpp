@@ -99,6 +99,25 @@ TEST_F(ProgramScenarioTest, AProgramWithTethersLibraryCommandsTheUavItself) {
   EXPECT_EQ(thrown_error(ErrorCode::kUsage, [&] { made(); }).subject(), "--starts-in-air");
 }
 
+TEST_F(ProgramScenarioTest, TheProcessesOfAShellScriptFlyToo) {
+  EXPECT_FALSE(read().uavs.at(0).sut.has_all_processes);
+  options_.has_all_processes = true;
+  EXPECT_TRUE(read().uavs.at(0).sut.has_all_processes);
+  options_.has_all_processes = false;
+  for (const char* first : {"#!/bin/sh", "#!/usr/bin/env bash", "#! /bin/bash -e"}) {
+    options_.command = {scratch_.write("start", std::string(first) + "\nroscore &\n")};
+    EXPECT_TRUE(read().uavs.at(0).sut.has_all_processes) << first;
+  }
+  options_.command = {scratch_.write("start", "#!/usr/bin/python3\nimport sh\n")};
+  EXPECT_FALSE(read().uavs.at(0).sut.has_all_processes);
+  options_.command = {"sh", "start"};
+  EXPECT_TRUE(read().uavs.at(0).sut.has_all_processes);
+  options_.uses_library = true;
+  EXPECT_FALSE(read().uavs.at(0).sut.has_all_processes);
+  options_.has_all_processes = true;
+  EXPECT_EQ(thrown_error(ErrorCode::kUsage, [&] { made(); }).subject(), "--all-processes");
+}
+
 TEST_F(ProgramScenarioTest, KeepsEachCharacterOfTheArguments) {
   options_.command = {"sh", "-c", "a \"b\" \\ 'c'\n\t#{world} = {world}", "ü", "--", "-x"};
   EXPECT_EQ(read().uavs.at(0).sut.command, options_.command);

@@ -44,5 +44,21 @@ TEST(RequireClock, RefusesEmulatorsAndTheScriptedClockForAProgramAsItIs) {
   expect_refusal(0, "uav1", [&] { require_clock(scenario, condition); });
 }
 
+TEST(RequireClock, ProcessesOfOneProgramNeedTheCpuClockAndSynchronisation) {
+  Scenario scenario;
+  scenario.file = "/s/ros.toml";
+  scenario.uavs.resize(1);
+  scenario.uavs[0].placement.name = "uav1";
+  scenario.uavs[0].sut.is_as_is = scenario.uavs[0].sut.has_all_processes = true;
+  Condition condition;
+  condition.computers[0].clock.kind = computer::ClockKind::kCpu;
+  EXPECT_NO_THROW(require_clock(scenario, condition));
+  condition.policy = Policy::kFreeRunning;
+  expect_refusal(0, "uav1", [&] { require_clock(scenario, condition); });
+  condition.policy = Policy::kConservativeBarrier;
+  condition.computers[0].clock.kind = computer::ClockKind::kWall;
+  expect_refusal(0, "uav1", [&] { require_clock(scenario, condition); });
+}
+
 }  // namespace
 }  // namespace tether::scenario

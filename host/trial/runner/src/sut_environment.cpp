@@ -49,6 +49,7 @@ SutCommand sut_command(const scenario::Sut& sut, const std::optional<scenario::T
     command.words.insert(command.words.end(), target->launcher.begin(), target->launcher.end());
   }
   if (sut.is_as_is) command.words.insert(command.words.end(), {"tether-exec", "--as-is"});
+  if (sut.has_all_processes) command.words.emplace_back("--all-processes");
   command.program = command.words.size();
   command.words.insert(command.words.end(), words.begin(), words.end());
   return command;

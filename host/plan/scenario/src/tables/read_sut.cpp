@@ -77,8 +77,8 @@ std::vector<std::string> read_command(const toml::Table& sut, const std::filesys
   return command;
 }
 
-constexpr std::array<std::string_view, 6> kSutKeys = {"command", "concurrent", "as_is",
-                                                      "mission", "parameters", "files"};
+constexpr std::array<std::string_view, 7> kSutKeys = {
+    "command", "concurrent", "as_is", "all_processes", "mission", "parameters", "files"};
 
 // The SUT gets it as a file. Its clauses are checked against what the scenario has.
 void read_mission(const toml::Table& table, Scenario& scenario, Sut& sut) {
@@ -97,6 +97,7 @@ void read_mission(const toml::Table& table, Scenario& scenario, Sut& sut) {
 Sut read_program(const toml::Table& sut, const std::filesystem::path& folder) {
   Sut program{read_command(sut, folder), {}, sut.boolean_or("concurrent", false)};
   program.is_as_is = sut.boolean_or("as_is", false);
+  program.has_all_processes = sut.boolean_or("all_processes", false);
   return program;
 }
 
@@ -107,6 +108,9 @@ void require_one_supervisor(const toml::Table& table, const Sut& sut) {
     table.fail(table.has("concurrent") ? "concurrent" : "as_is",
                "is for programs that use Tether's library, and 'as_is' for those that do not. "
                "Remove one.");
+  if (sut.has_all_processes && !sut.is_as_is)
+    table.fail(table.has("all_processes") ? "all_processes" : "as_is",
+               "is for programs that fly as they are. Add as_is = true.");
   if ((!sut.concurrent && !sut.is_as_is) || program.filename() != "tether-exec") return;
   table.fail(table.has("concurrent") ? "concurrent"
              : table.has("as_is")    ? "as_is"
@@ -144,6 +148,7 @@ Sut read_sut(const toml::Table& uav, const std::optional<Sut>& fallback, Scenari
   Sut sut = inherits ? *fallback : read_program(own, scenario.file.parent_path());
   sut.concurrent = own.boolean_or("concurrent", sut.concurrent);
   sut.is_as_is = own.boolean_or("as_is", sut.is_as_is);
+  sut.has_all_processes = own.boolean_or("all_processes", sut.has_all_processes);
   require_one_supervisor(own, sut);
   Sut given;
   given.parameters = read_parameters(own, scenario.files);
