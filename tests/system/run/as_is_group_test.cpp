@@ -1,0 +1,181 @@
+#include "support/trials.h"
+
+#include <cmath>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+/// All processes of a program that knows nothing of Tether fly: they share one execution time, talk
+/// to each other over the loopback, and reach the UAV's devices from any of them.
+namespace tether::system_test {
+namespace {
+
+using testing::HasSubstr;
+
+class AsIsGroup : public testing::Test {
+ protected:
+  Output fly(const std::string& script, double factor = 1.0, int limit_s = 20) const {
+    write_text(folder_ / "start.sh", "#!/bin/bash\n" + script);
+    const auto file = folder_ / "group.toml";
+    std::ostringstream text;
+    text << "name = \"group\"\nworld = \"yard\"\ntime_limit_s = " << limit_s
+         << "\n[[uav]]\nname = \"uav1\"\nmodel = \"hummingbird\"\nposition_m = [0.0, 0.0, 0.1]\n"
+            "flight_controller = \"built-in\"\nprofile = \"paper_streaming\"\n"
+            "[sut]\ncommand = [\"/bin/bash\", \""
+         << (folder_ / "start.sh").string()
+         << "\"]\nas_is = true\nall_processes = true\n"
+            "[[condition]]\nname = \"c\"\npolicy = \"conservative_barrier\"\nclock = \"cpu\"\n"
+            "cpu_factor = "
+         << std::fixed << factor << "\n";
+    write_text(file, text.str());
+    return run(tether({"run", file, "--quiet", "--force", "--out", folder_ / "out"}));
+  }
+  /// Of a program that does nothing with its UAV, whose flight then fails.
+  void expect_exit_0(const Output& output) const {
+    EXPECT_THAT(read_result(folder_ / "out")["suts"][0]["outcome"].get<std::string>(),
+                HasSubstr("exit code 0"))
+        << output.err << said();
+    EXPECT_EQ(audit_code(folder_ / "out"), 0);
+  }
+  std::string said() const { return read_text(folder_ / "out" / "sut-uav1.log"); }
+
+  TempFolder folder_;
+};
+
+// Each in a process of its own: those that wait and those that compute see one clock.
+TEST_F(AsIsGroup, ProcessesHaveOneClockAndTheirWaitsTakeNoRealTime) {
+  write_text(folder_ / "one.py",
+             "import sys, time\n"
+             "for i in range(int(sys.argv[2])):\n"
+             "    time.sleep(float(sys.argv[1]))\n"
+             "    print(sys.argv[1], time.monotonic(), flush=True)\n");
+  const std::string one = "python3 " + (folder_ / "one.py").string();
+  const Output output = fly(one + " 0.5 4 &\n" + one + " 0.2 10\nsleep 3\nwait\nexit 0\n");
+  expect_exit_0(output);
+  std::istringstream lines(said());
+  double last_s = 0.0;
+  int count = 0;
+  for (double period_s = 0.0, at_s = 0.0; lines >> period_s >> at_s; ++count) {
+    EXPECT_GE(at_s, last_s) << said();
+    last_s = at_s;
+  }
+  EXPECT_EQ(count, 14) << said();
+  EXPECT_NEAR(read_result(folder_ / "out")["sync"]["st_at_end_s"].get<double>(), 5.2, 0.4);
+}
+
+// What the other process computes is what a message takes there and back, on any machine under any
+// load; the rest is the interpreters'.
+TEST_F(AsIsGroup, AMessageOverTheLoopbackTakesWhatProcessesCompute) {
+  write_text(folder_ / "server.py",
+             "import socket, time\n"
+             "server = socket.create_server(('127.0.0.1', 0))\n"
+             "print(server.getsockname()[1], file=open('port', 'w'), flush=True)\n"
+             "peer = server.accept()[0]\n"
+             "while data := peer.recv(100):\n"
+             "    begin = time.thread_time()\n"
+             "    while time.thread_time() - begin < 0.01: pass\n"
+             "    for byte in data: peer.send(bytes([byte]))\n");
+  write_text(folder_ / "client.py",
+             "import socket, time\n"
+             "peer = socket.create_connection(('127.0.0.1', int(open('port').read())))\n"
+             "peer.settimeout(1.0)\n"
+             "took = []\n"
+             "for i in range(30):\n"
+             "    time.sleep(0.05)\n"
+             "    begin = time.monotonic()\n"
+             "    peer.send(b'ab')\n"
+             "    peer.recv(1), peer.recv(1)\n"
+             "    took.append(time.monotonic() - begin)\n"
+             "took.sort()\n"
+             "print(took[0], took[15])\n"
+             "before = time.monotonic()\n"
+             "try: peer.recv(1)\n"
+             "except TimeoutError: print(time.monotonic() - before)\n");
+  const std::string script = "cd " + folder_.path().string() +
+                             "\npython3 server.py &\nwhile [ ! -s port ]; do sleep 0.01; done\n"
+                             "python3 client.py\nexit 0\n";
+  for (const double factor : {1.0, 6.0}) {
+    const Output output = fly(script, factor);
+    expect_exit_0(output);
+    std::istringstream lines(said());
+    double least_s = 0.0, median_s = 0.0, timeout_s = 0.0;
+    ASSERT_TRUE(lines >> least_s >> median_s >> timeout_s) << said();
+    EXPECT_GE(least_s, 0.01 * factor);
+    EXPECT_LE(median_s, 0.0115 * factor);
+    EXPECT_GE(timeout_s, 1.0);
+    EXPECT_LE(timeout_s, 1.0 + 0.002 * factor);
+    std::filesystem::remove(folder_ / "port");
+  }
+}
+
+// One process has the link to the flight controller, another one the camera, and a forked one
+// waits.
+TEST_F(AsIsGroup, EachProcessHasTheDevicesOfTheUav) {
+  write_text(folder_ / "link.py",
+             "import os, socket, sys, time\n"
+             "s = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)\n"
+             "s.bind(('', 14540))\n"
+             "s.sendto(b'x', s.recvfrom(1000)[1])\n"
+             "child = os.fork()\n"
+             "if child == 0:\n"
+             "    begin = time.monotonic()\n"
+             "    time.sleep(0.3)\n"
+             "    print('child', time.monotonic() - begin, flush=True)\n"
+             "    os._exit(0)\n"
+             "s.settimeout(2.0)\n"
+             "n, begin = 0, time.monotonic()\n"
+             "while time.monotonic() - begin < 0.4: n += len(s.recv(1000)) > 0\n"
+             "print('messages', n, flush=True)\n"
+             "os.waitpid(child, 0)\n");
+  const Output output = fly("python3 " + (folder_ / "link.py").string() + " &\n" + "sleep 0.6\n" +
+                            std::string(CAMERA_PROGRAM) + "\nwait $!\n");
+  EXPECT_EQ(output.code, 0) << output.err << said();
+  EXPECT_EQ(audit_code(folder_ / "out"), 0);
+  std::istringstream lines(said());
+  int images = 0;
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    std::string what;
+    double number = 0.0;
+    words >> what >> number;
+    if (what == "child") {
+      EXPECT_NEAR(number, 0.3, 0.05);
+    } else if (what == "messages") {
+      EXPECT_GT(number, 20.0);
+    } else {
+      ++images;
+    }
+  }
+  EXPECT_EQ(images, 10) << said();
+}
+
+// The timed waits of each library, in a process that is not the first one.
+TEST_F(AsIsGroup, EveryWayToWaitTakesItsTime) {
+  const Output output = fly(std::string(WAITS_PROGRAM) + "\nexit 0\n");
+  expect_exit_0(output);
+  std::istringstream lines(said());
+  int ways = 0;
+  std::string name;
+  for (long monotonic_us = 0, real_us = 0; lines >> name >> monotonic_us >> real_us; ++ways) {
+    if (name == "woken_beside_computing" || name == "beside_computing") continue;
+    EXPECT_GE(monotonic_us, 20'000) << name;
+    EXPECT_LE(monotonic_us, 23'000) << name;
+  }
+  EXPECT_EQ(ways, 25);
+}
+
+TEST_F(AsIsGroup, TheEndOfTheFirstProcessEndsAll) {
+  EXPECT_EQ(fly("sleep 1000 &\nsetsid sleep 1001 &\nsleep 0.1\nexit 5\n").code, 3);
+  EXPECT_THAT(said(), testing::IsEmpty());
+  const Output killed = fly("sleep 1000 &\nkill -SEGV $$\n");
+  EXPECT_EQ(killed.code, 3);
+  EXPECT_THAT(killed.err, HasSubstr("signal 11"));
+  EXPECT_EQ(fly("sleep 1000 &\nwait\n", 1.0, 2).code, 1) << "the time limit";
+  EXPECT_EQ(run({{"pgrep", "-f", "^sleep 100[01]$"}, {}}).code, 1) << "nothing is left";
+}
+
+}  // namespace
+}  // namespace tether::system_test
