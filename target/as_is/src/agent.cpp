@@ -228,6 +228,10 @@ void Agent::drop(const std::string& sensor, bool keeps_later_ones) {
 }
 
 void Agent::forget(int fd) {
+  if (port_.is_line(fd)) {
+    const std::lock_guard lock(stream_mutex_);
+    streams_.erase(fd);
+  }
   port_.forget(fd);
   timers_.forget(fd);
   if (is_camera(fd)) with_cameras([fd](CameraFiles& cameras) { cameras.forget(fd); });
@@ -248,9 +252,9 @@ bool Agent::send(std::span<const std::uint8_t> bytes) {
   return false;
 }
 
-void Agent::send_stream(std::span<const std::uint8_t> bytes) {
+void Agent::send_stream(int line, std::span<const std::uint8_t> bytes) {
   const std::lock_guard lock(stream_mutex_);
-  stream_.add(bytes, [this](std::span<const std::uint8_t> frame) { send(frame); });
+  streams_[line].add(bytes, [this](std::span<const std::uint8_t> frame) { send(frame); });
 }
 
 bool Agent::has_controller() {

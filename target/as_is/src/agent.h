@@ -11,6 +11,7 @@
 #include <atomic>
 #include <functional>
 #include <list>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -81,8 +82,8 @@ class Agent {
   /// To the flight controller. False: the UAV has none.
   bool send(std::span<const std::uint8_t> bytes);
 
-  /// The same, from a stream of frames.
-  void send_stream(std::span<const std::uint8_t> bytes);
+  /// The same, from a stream of frames: that of a line's descriptor.
+  void send_stream(int line, std::span<const std::uint8_t> bytes);
   bool has_controller();
   /// Of satellite navigation, with a rate of its own.
   bool has_receiver() {
@@ -182,7 +183,7 @@ class Agent {
   std::string receiver_{};  // the sensor; empty: none
   Timers timers_;
   std::mutex stream_mutex_;
-  FrameStream stream_;
+  std::map<int, FrameStream> streams_;
   Threads threads_;
   std::mutex leading_;
   std::mutex waits_mutex_;

@@ -109,8 +109,8 @@ ssize_t send_bytes(Agent& agent, int socket, const void* bytes, std::size_t size
   const std::span<const std::uint8_t> all(static_cast<const std::uint8_t*>(bytes), size);
   if (agent.port().is_of_receiver(socket))
     return static_cast<ssize_t>(size);  // settings, which it does not have
-  if (agent.port().is_serial(socket))
-    agent.send_stream(all);
+  if (agent.port().is_line(socket))
+    agent.send_stream(socket, all);
   else
     agent.send(all);
   return static_cast<ssize_t>(size);
@@ -162,13 +162,19 @@ int copied(int fd, int copy) {
   return copy;
 }
 
+int type_of(int socket) {
+  int type = 0;
+  socklen_t size = sizeof type;
+  return ::getsockopt(socket, SOL_SOCKET, SO_TYPE, &type, &size) == 0 ? type : -1;
+}
+
 /// Whether a message to this address from this socket goes to the flight controller: then it is
 /// ours from now on.
 Agent* agent_for(int socket, const sockaddr* to, socklen_t size) {
   Agent* const agent = tether::as_is::agent();
   if (agent == nullptr) return nullptr;
   if (to == nullptr) return agent->port().is_ours(socket) ? agent : nullptr;
-  if (!Port::is_controller(to, size)) return nullptr;
+  if (!Port::is_controller(to, size) || type_of(socket) != SOCK_DGRAM) return nullptr;
   if (!agent->port().is_ours(socket)) {
     // Bound, so that messages can be sent to it.
     const Inside inside;
@@ -187,17 +193,19 @@ using namespace tether::as_is;
 
 TETHER_IN_PLACE int bind(int socket, const sockaddr* address, socklen_t size) {
   Agent* const agent = tether::as_is::agent();
-  int type = 0;
-  socklen_t type_size = sizeof type;
-  const bool is_port = agent != nullptr && Port::is_companion(address, size) &&
-                       ::getsockopt(socket, SOL_SOCKET, SO_TYPE, &type, &type_size) == 0 &&
-                       type == SOCK_DGRAM;
-  if (!is_port) return TETHER_REAL(bind)(socket, address, size);
+  if (agent == nullptr || !Port::is_companion(address, size) || type_of(socket) != SOCK_DGRAM)
+    return TETHER_REAL(bind)(socket, address, size);
   const Inside inside;
   return agent->port().bind(socket, address, size);
 }
 
 TETHER_IN_PLACE int connect(int socket, const sockaddr* address, socklen_t size) {
+  if (Agent* const any = tether::as_is::agent();
+      any && any->has_controller() && Port::is_controllers_stream(address, size) &&
+      type_of(socket) == SOCK_STREAM && !any->port().is_ours(socket)) {
+    const Inside inside;
+    return any->port().connect_stream(socket, address, size);
+  }
   Agent* const agent = agent_for(socket, address, size);
   if (agent == nullptr || address == nullptr) {
     send_at_once(socket);
@@ -227,7 +235,7 @@ TETHER_IN_PLACE int getpeername(int socket, sockaddr* __restrict address,
                                 socklen_t* __restrict size) {
   Agent* const agent = agent_of(socket);
   const int result = TETHER_REAL(getpeername)(socket, address, size);
-  if (agent != nullptr && result == 0) agent->port().believe(address, size);
+  if (agent != nullptr && result == 0) agent->port().believe_peer(socket, address, size);
   return result;
 }
 

@@ -1,11 +1,13 @@
 #include "port.h"
 
 #include <array>
+#include <cerrno>
 #include <cstdint>
 #include <string>
 #include <vector>
 
 #include <arpa/inet.h>
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -45,6 +47,9 @@ TEST(AsIsPort, KnowsThePortsOfCompanionsAndFlightControllers) {
   EXPECT_FALSE(Port::is_companion(plain(loopback(8080)), sizeof(sockaddr_in)));
   EXPECT_TRUE(Port::is_controller(plain(loopback(14580)), sizeof(sockaddr_in)));
   EXPECT_FALSE(Port::is_controller(nullptr, 0));
+  EXPECT_TRUE(Port::is_controllers_stream(plain(loopback(5760)), sizeof(sockaddr_in)));
+  EXPECT_TRUE(Port::is_controllers_stream(plain(loopback(14540)), sizeof(sockaddr_in)));
+  EXPECT_FALSE(Port::is_controllers_stream(plain(loopback(8080)), sizeof(sockaddr_in)));
 }
 
 // Two programs on one machine can have the same port.
@@ -85,6 +90,35 @@ TEST(AsIsPort, AForgottenSocketIsLeftAlone) {
   EXPECT_FALSE(port.is_any());
   port.deliver(kHello);
   EXPECT_EQ(received(socket.fd), "");
+}
+
+// Of two programs, each has its own controller at the same port.
+TEST(AsIsPort, AConnectionIsALineToTheController) {
+  Port one, other;
+  const int a = ::socket(AF_INET, SOCK_STREAM, 0), b = ::socket(AF_INET, SOCK_STREAM, 0);
+  ASSERT_EQ(::fcntl(b, F_SETFL, O_NONBLOCK), 0);
+  const sockaddr_in wanted = loopback(5760);
+  ASSERT_EQ(one.connect_stream(a, plain(wanted), sizeof wanted), 0);
+  EXPECT_EQ(other.connect_stream(b, plain(wanted), sizeof wanted), -1);
+  EXPECT_EQ(errno, EINPROGRESS) << "a program that does not wait for it";
+  EXPECT_TRUE(one.is_line(a));
+  EXPECT_FALSE(one.is_serial(a));
+  sockaddr_in peer{};
+  socklen_t size = sizeof peer;
+  ASSERT_EQ(::getpeername(a, reinterpret_cast<sockaddr*>(&peer), &size), 0);
+  one.believe_peer(a, reinterpret_cast<sockaddr*>(&peer), &size);
+  EXPECT_EQ(ntohs(peer.sin_port), 5760);
+  const int copy = ::dup(a);
+  one.copy(a, copy);
+  one.deliver(kHello);
+  EXPECT_EQ(received(copy), "hi") << "once, for both descriptors";
+  EXPECT_EQ(received(b), "");
+  ::shutdown(copy, SHUT_RDWR);
+  for (int i = 0; i < 3; ++i) one.deliver(kHello);  // nobody reads: no signal
+  for (const int fd : {a, copy}) one.forget(fd), ::close(fd);
+  EXPECT_FALSE(one.is_any());
+  other.forget(b);
+  ::close(b);
 }
 
 }  // namespace

@@ -344,44 +344,61 @@ TEST_F(AsIsCamera, AThreadReadsTheCameraBesideOneThatComputes) {
   EXPECT_NEAR(std::stod(said()), 15.0, 2.0) << said();
 }
 
-// Whole frames in pieces, and the answer from a terminal.
+/// Whole frames in pieces, and the answer from a stream of bytes, which `opening` opens as `fd`.
+std::string arms_over(const std::string& opening, const std::string& flushing) {
+  return "import os, select, socket, sys, termios, time, tty\n"
+         "sys.dont_write_bytecode = True\n"
+         "sys.path.insert(0, '" TETHER_SOURCE_DIR
+         "/data/programs')\n"
+         "import mavlink_square as m\n" +
+         opening +
+         "class Line:\n"
+         "    def sendto(self, data, _):\n"
+         "        for byte in data: os.write(fd, bytes([byte]))\n"
+         "controller = m.FlightController.__new__(m.FlightController)\n"
+         "controller.link, controller.address, controller.sequence = Line(), None, 0\n"
+         "controller.last, buffer = {}, b''\n"
+         "def listen(wanted):\n"
+         "    global buffer\n"
+         "    while wanted not in controller.last:\n"
+         "        assert select.select([fd], [], [], 2.0)[0]\n"
+         "        buffer += os.read(fd, 4096)\n"
+         "        while len(buffer) > 2 and len(buffer) >= buffer[1] + 12:\n"
+         "            assert buffer[0] == 0xFD\n"
+         "            controller.take(buffer[:buffer[1] + 12])\n"
+         "            buffer = buffer[buffer[1] + 12:]\n"
+         "listen(m.HEARTBEAT)\n"
+         "time.sleep(2)\n" +
+         flushing +
+         "controller.send(m.COMMAND, 1, 0, 0, 0, 0, 0, 0, m.ARM, 1, 1, 0)\n"
+         "listen(m.ACK)\n"
+         "print('acknowledged', controller.last[m.ACK])\n";
+}
+
 TEST_F(AsIs, ASerialPortLeadsToTheFlightController) {
-  const Output output = fly_python(
-      "import os, select, sys, termios, time, tty\n"
-      "sys.dont_write_bytecode = True\n"
-      "sys.path.insert(0, '" TETHER_SOURCE_DIR
-      "/data/programs')\n"
-      "import mavlink_square as m\n"
-      "fd = os.open('/dev/ttyACM0', os.O_RDWR | os.O_NOCTTY)\n"
-      "assert os.isatty(fd) and os.path.exists('/dev/ttyACM0')\n"
-      "tty.setraw(fd)\n"
-      "mode = termios.tcgetattr(fd)\n"
-      "mode[4] = mode[5] = termios.B921600\n"
-      "termios.tcsetattr(fd, termios.TCSANOW, mode)\n"
-      "class Line:\n"
-      "    def sendto(self, data, _):\n"
-      "        for byte in data: os.write(fd, bytes([byte]))\n"
-      "controller = m.FlightController.__new__(m.FlightController)\n"
-      "controller.link, controller.address, controller.sequence = Line(), None, 0\n"
-      "controller.last, buffer = {}, b''\n"
-      "def listen(wanted):\n"
-      "    global buffer\n"
-      "    while wanted not in controller.last:\n"
-      "        assert select.select([fd], [], [], 2.0)[0]\n"
-      "        buffer += os.read(fd, 4096)\n"
-      "        while len(buffer) > 2 and len(buffer) >= buffer[1] + 12:\n"
-      "            assert buffer[0] == 0xFD\n"
-      "            controller.take(buffer[:buffer[1] + 12])\n"
-      "            buffer = buffer[buffer[1] + 12:]\n"
-      "listen(m.HEARTBEAT)\n"
-      "time.sleep(2)\n"
-      "termios.tcflush(fd, termios.TCIFLUSH)\n"
-      "buffer = b''\n"
-      "controller.send(m.COMMAND, 1, 0, 0, 0, 0, 0, 0, m.ARM, 1, 1, 0)\n"
-      "listen(m.ACK)\n"
-      "print('acknowledged', controller.last[m.ACK])\n");
+  const Output output =
+      fly_python(arms_over("fd = os.open('/dev/ttyACM0', os.O_RDWR | os.O_NOCTTY)\n"
+                           "assert os.isatty(fd) and os.path.exists('/dev/ttyACM0')\n"
+                           "tty.setraw(fd)\n"
+                           "mode = termios.tcgetattr(fd)\n"
+                           "mode[4] = mode[5] = termios.B921600\n"
+                           "termios.tcsetattr(fd, termios.TCSANOW, mode)\n",
+                           "termios.tcflush(fd, termios.TCIFLUSH)\n"
+                           "buffer = b''\n"));
   EXPECT_EQ(output.code, 0) << output.err << said();
   EXPECT_NE(said().find("acknowledged {'command': 400, 'result': 0}"), std::string::npos) << said();
+}
+
+// What waits for it is read, all of it.
+TEST_F(AsIs, ATcpConnectionLeadsToTheFlightController) {
+  const Output output =
+      fly_python(arms_over("link = socket.create_connection(('127.0.0.1', 5760), 3.0)\n"
+                           "assert link.getpeername() == ('127.0.0.1', 5760)\n"
+                           "fd = link.fileno()\n",
+                           ""));
+  EXPECT_EQ(output.code, 0) << output.err << said();
+  EXPECT_NE(said().find("acknowledged {'command': 400, 'result': 0}"), std::string::npos) << said();
+  EXPECT_EQ(audit_code(folder_ / "out"), 0);
 }
 
 // The same program by MAVLink: a fast computer reaches the corners, a slow one does not.
