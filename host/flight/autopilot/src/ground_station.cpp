@@ -16,6 +16,8 @@ class WithGroundStation final : public FlightController {
     station_.set_peer(port);
   }
 
+  void boot(const Sensed& at_rest) override { controller_->boot(at_rest); }
+
   Actions step(const Sensed& sensed, const std::vector<Bytes>& received) override {
     // A station that sends without end must not hold the run.
     constexpr std::size_t kMostOfAStep = 64;

@@ -26,15 +26,18 @@ std::optional<SimTime> Line::send(SimTime at, std::size_t bytes) {
   return free_at_ + latency_;
 }
 
-ControllerLinks::ControllerLinks(const std::vector<UavOptions>& options,
-                                 std::vector<std::string> uavs, RunLog& log)
+ControllerLinks::ControllerLinks(const RunOptions& options, std::vector<std::string> uavs,
+                                 Stepper& stepper, RunLog& log)
     : uavs_(std::move(uavs)), log_(&log) {
-  for (const UavOptions& uav : options) {
+  const auto has_one = [](const UavOptions& uav) { return uav.controller.has_value(); };
+  if (std::ranges::any_of(options.uavs, has_one)) stepper.reset(options.seed);
+  for (const UavOptions& uav : options.uavs) {
     Port& port = ports_.emplace_back();
     steps_.add();
     arrivals_.add();
     if (!uav.controller) continue;
     port.controller = uav.controller->make();
+    port.controller->boot(stepper.sense_at_rest(ports_.size() - 1));
     port.period = uav.controller->period;
     port.to_controller = port.to_companion =
         Line(uav.controller->link_baud, uav.controller->link_latency);

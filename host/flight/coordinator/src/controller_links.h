@@ -40,8 +40,8 @@ class Line {
 /// messages are received as those by radio, from `link::kAutopilot`. Not thread-safe.
 class ControllerLinks {
  public:
-  /// `log` must outlive this.
-  ControllerLinks(const std::vector<UavOptions>& options, std::vector<std::string> uavs,
+  /// Makes the controllers, which boot. `log` must outlive this.
+  ControllerLinks(const RunOptions& options, std::vector<std::string> uavs, Stepper& stepper,
                   RunLog& log);
 
   bool has(std::size_t uav) const { return ports_[uav].controller != nullptr; }

@@ -147,7 +147,7 @@ Coordinator::Impl::Impl(sim::Simulator& simulator, record::Recorder& recorder, R
                make_samplers(simulator, options_), losses_of(simulator, options_)),
       sessions_(make_sessions(simulator, options_)),
       radio_(options_.radio, options_.seed, names_of(world()), log_),
-      controllers_(options_.uavs, names_of(world()), log_),
+      controllers_(options_, names_of(world()), stepper_, log_),
       watchdog_({.st = grid().ceil(SimTime(options_.time_limit)),
                  .connect = options_.connect_limit,
                  .hang = options_.hang_limit},

@@ -214,8 +214,7 @@ uav::BatterySample Stepper::read_battery(std::size_t uav, record::Interaction& e
 }
 
 // The noise of its measurements is that of the sensor, with numbers of their own.
-autopilot::Sensed Stepper::sense(std::size_t uav) {
-  constexpr std::uint64_t kFirstIndex = std::uint64_t{1} << 40;
+autopilot::Sensed Stepper::sense(std::size_t uav, const std::function<std::uint64_t()>& number) {
   autopilot::Sensed sensed{
       .at = st_, .truth = guarded([&](sim::Simulator& s) { return s.ground_truth(uav).body; })};
   if (has_battery_[uav]) {
@@ -224,18 +223,27 @@ autopilot::Sensed Stepper::sense(std::size_t uav) {
       sensed.battery =
           uav::BatterySample{st_, battery->voltage_V, battery->current_A, battery->charge};
   }
-  sensed.measure = [this, uav](uav::SensorKind kind) -> std::optional<uav::Sample> {
+  sensed.measure = [this, uav, number](uav::SensorKind kind) -> std::optional<uav::Sample> {
     const std::vector<sim::Sensor>& sensors = simulator_->world().uavs[uav].sensors;
     const auto sensor = std::ranges::find(sensors, kind, &sim::Sensor::kind);
     if (sensor == sensors.end()) return std::nullopt;
     return guarded([&](sim::Simulator& s) {
       s.capture(sensed_);
-      return s.measure(
-          sensed_, uav, static_cast<std::size_t>(sensor - sensors.begin()),
-          kFirstIndex + static_cast<std::uint64_t>(st_.time_since_epoch() / grid_.dt()));
+      return s.measure(sensed_, uav, static_cast<std::size_t>(sensor - sensors.begin()), number());
     });
   };
   return sensed;
+}
+
+autopilot::Sensed Stepper::sense(std::size_t uav) {
+  constexpr std::uint64_t kFirst = std::uint64_t{1} << 40;
+  return sense(uav, [this] {
+    return kFirst + static_cast<std::uint64_t>(st_.time_since_epoch() / grid_.dt());
+  });
+}
+
+autopilot::Sensed Stepper::sense_at_rest(std::size_t uav) {
+  return sense(uav, [number = std::uint64_t{1} << 39]() mutable { return number++; });
 }
 
 void Stepper::fly(std::size_t uav, const uav::Setpoint& setpoint) {

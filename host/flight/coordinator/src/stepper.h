@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -83,6 +84,8 @@ class Stepper {
   std::optional<uav::Sample> measure(std::size_t uav, record::Interaction& entry);
   /// What the UAV's flight controller is given now. Valid as long as ST does not advance.
   autopilot::Sensed sense(std::size_t uav);
+  /// The same before the flight: each measurement has noise of its own.
+  autopilot::Sensed sense_at_rest(std::size_t uav);
   /// It follows this from now on.
   void fly(std::size_t uav, const uav::Setpoint& setpoint);
   bool has_battery(std::size_t uav) const { return has_battery_[uav]; }
@@ -92,6 +95,7 @@ class Stepper {
   void announce();
 
  private:
+  autopilot::Sensed sense(std::size_t uav, const std::function<std::uint64_t()>& number);
   void note_change(std::size_t uav);
   void load_batteries(SimTime to);
   void sample();

@@ -9,6 +9,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -116,6 +117,40 @@ TEST(Line, TakesTenBitsForAByteAndHasRoomForASecond) {
   EXPECT_EQ(line.send(st_ms(500), 1), std::nullopt) << "1.11 s are waiting";
   EXPECT_EQ(line.send(st_ms(610), 1), st_ms(1'625));
   EXPECT_EQ(Line(0.0, milliseconds(2)).send(st_ms(7), 1'000'000), st_ms(9));
+}
+
+/// Measures twice when it boots, and at each step.
+class Measuring final : public autopilot::FlightController {
+ public:
+  explicit Measuring(std::vector<std::uint64_t>& indices) : indices_(&indices) {}
+  void boot(const autopilot::Sensed& at_rest) override {
+    EXPECT_EQ(at_rest.at, SimTime{});
+    for (int i = 0; i < 2; ++i) measure(at_rest);
+  }
+  autopilot::Actions step(const autopilot::Sensed& sensed,
+                          const std::vector<autopilot::Bytes>&) override {
+    measure(sensed);
+    return {};
+  }
+
+ private:
+  void measure(const autopilot::Sensed& sensed) {
+    const auto sample = sensed.measure(uav::SensorKind::kImu);
+    indices_->push_back(std::visit([](const auto& content) { return content.index; }, *sample));
+  }
+  std::vector<std::uint64_t>* indices_;
+};
+
+TEST_F(ControllerLinksTest, AControllerBootsByItsSensorsEachTimeWithOtherNoise) {
+  std::vector<std::uint64_t> indices;
+  make_links(1, {});
+  options_.uavs[0].controller->make = [&] { return std::make_unique<Measuring>(indices); };
+  remake();
+  ASSERT_EQ(indices.size(), 2U) << "before the flight";
+  run({finish(milliseconds(9))});
+  ASSERT_GE(indices.size(), 5U);
+  const std::set<std::uint64_t> all(indices.begin(), indices.end());
+  EXPECT_EQ(all.size(), indices.size());
 }
 
 TEST_F(ControllerLinksTest, AMessageActsAtTheFirstStepAfterItsArrival) {

@@ -218,7 +218,7 @@ std::unique_ptr<FlightController> start_ardupilot(const ExternalSettings& settin
                 fmt::format("ArduPilot does not fly with steps of {:.1f} ms. Choose a step of at "
                             "most 4 ms for the simulator",
                             1e3 * to_seconds(settings.period)));
-  return booted<ArduPilot>(settings);
+  return std::make_unique<ArduPilot>(settings);
 }
 
 }  // namespace tether::autopilot

@@ -37,14 +37,10 @@ ExternalController::ExternalController(const ExternalSettings& settings, std::st
       gimbal_(settings.vehicle.joints),
       of_gimbal_({static_cast<std::uint8_t>(settings.instance + 1), kGimbal}) {}
 
-void ExternalController::boot() {
-  const uav::BodyState truth{settings_.vehicle.X_WB.p, settings_.vehicle.X_WB.q, {}, {}};
-  const uav::Vec3 at_rest_B =
-      rotate(inverse(truth.q_WB), uav::Vec3{0.0, 0.0, settings_.gravity_m_s2});
-  const Readings still =
-      ideal_readings(truth, at_rest_B, settings_.place, settings_.magnetic_field_T);
+// By the sensors with which it flies: their biases are there already.
+void ExternalController::boot(const Sensed& at_rest) {
   for (booted_ = settings_.period; !has_booted(booted_); booted_ += settings_.period)
-    advance(booted_, truth, still);
+    advance(booted_, at_rest.truth, readings_of(settings_, at_rest));
   sent_.clear();  // nobody was there
 }
 

@@ -28,8 +28,7 @@ inline constexpr mavlink::Address kSimulator{.system = 255, .component = 190};
 /// to simulators. Not thread-safe.
 class ExternalController : public FlightController {
  public:
-  /// On the ground, where nothing moves, until it can fly.
-  void boot();
+  void boot(const Sensed& at_rest) final;
   Actions step(const Sensed& sensed, const std::vector<Bytes>& received) final;
   std::string version() const final { return version_; }
 
@@ -85,14 +84,6 @@ class ExternalController : public FlightController {
 /// @throws Error(kSetup) if one is missing: 'path' must be `what`
 void prepare_folders(const ExternalSettings& settings,
                      const std::vector<std::filesystem::path>& needed, std::string_view what);
-
-/// A controller that has booted.
-template <class Controller>
-std::unique_ptr<FlightController> booted(const ExternalSettings& settings) {
-  auto controller = std::make_unique<Controller>(settings);
-  controller->boot();
-  return controller;
-}
 
 std::unique_ptr<FlightController> start_px4(const ExternalSettings& settings);
 std::unique_ptr<FlightController> start_ardupilot(const ExternalSettings& settings);

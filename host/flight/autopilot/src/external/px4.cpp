@@ -197,7 +197,7 @@ class Px4 final : public ExternalController {
 std::unique_ptr<FlightController> start_px4(const ExternalSettings& settings) {
   // It binds these itself.
   for (const Port port : {kOwnPort, kGroundPort}) (void)UdpPort(number(port, settings), "PX4");
-  return booted<Px4>(settings);
+  return std::make_unique<Px4>(settings);
 }
 
 }  // namespace tether::autopilot

@@ -39,8 +39,7 @@ struct External {
   std::size_t most_uavs;  ///< of a run; with more, ports or ids would be the same
   bool has_fixed_ports;   ///< the same in each run: runs cannot be parallel
   bool repeats;           ///< it answers in the same way in each run
-  /// Starts it, and lets it boot on the ground.
-  /// @throws Error(kSetup) if it cannot be started, a port is in use, or it does not boot.
+  /// Starts it. @throws Error(kSetup) if it cannot be started, or a port is in use.
   /// Steps of the controller throw Error(kLinkLost) if it ends, and Error(kHung) if it does not
   /// answer or does not come to rest.
   std::unique_ptr<FlightController> (*start)(const ExternalSettings& settings);

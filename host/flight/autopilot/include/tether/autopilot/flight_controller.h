@@ -42,6 +42,9 @@ class FlightController {
   FlightController(const FlightController&) = delete;
   FlightController& operator=(const FlightController&) = delete;
 
+  /// Before the first step: it boots on the ground, where nothing moves. Each measurement is
+  /// another one, all of ST 0. @throws Error(kSetup) if it does not boot
+  virtual void boot(const Sensed& at_rest) { static_cast<void>(at_rest); }
   /// One step: `received` has what has arrived from the companion since the last one, in order.
   /// Whatever it contains, nothing fails for it.
   /// @throws Error of a controller that is a process of its own, and was lost
