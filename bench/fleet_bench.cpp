@@ -25,6 +25,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <tether/autopilot/built_in.h>
 #include <tether/client/simulated_vehicle.h>
 #include <tether/coordinator/coordinator.h>
 #include <tether/link/server.h>
@@ -35,9 +36,10 @@
 
 // What a second of flight costs for each UAV with 1, 16, 64 and 256 UAVs: a whole coordinator with
 // its record and the embedded simulator, over loopback to a process with one thread for each UAV.
-// Each program reads every sample of the IMU, or every image, and commands a velocity. Clocks are
+// Each program reads every sample of the IMU, or every image, and commands a velocity; or is the
+// companion of a built-in flight controller, and waits, or reads all that this sends. Clocks are
 // scripted, so that the flights are the same in every run.
-//   fleet_bench [SECONDS OF ST [1|16|64|256|camera]]
+//   fleet_bench [SECONDS OF ST [1|16|64|256|camera|idle|active]]
 // All figures are milliseconds for each UAV and second of ST. CPU time does not depend much on what
 // else the machine does; wall time does. In real time are flights with UAVs × wall ≤ 1000. Each
 // flight is flown twice: to read the CPU time of the parts takes time itself, so the wall time, the
@@ -47,6 +49,7 @@
 //   sensors  states and samples; all that other threads draw
 //   truth    the ground truth, for the record: poses, clearances, contacts
 //   record   writing it
+//   pilot    flight controllers: their steps
 // The yardsticks, in the same program: the steps of the engine alone with the same world, and as
 // many exchanges of 64 bytes each way, by one thread that polls, as there were interactions.
 namespace tether {
@@ -101,8 +104,8 @@ struct Accounts {
   explicit Accounts(bool are_open) {
     for (Account* part : all()) part->is_open = are_open;
   }
-  std::array<Account*, 4> all() { return {&physics, &sensors, &truth, &record}; }
-  Account physics, sensors, truth, record;
+  std::array<Account*, 5> all() { return {&physics, &sensors, &truth, &record, &pilot}; }
+  Account physics, sensors, truth, record, pilot;
 };
 
 class TimedSimulator final : public sim::Simulator {
@@ -172,8 +175,30 @@ class TimedRecorder final : public record::Recorder {
   Account& account_;
 };
 
+class TimedController final : public autopilot::FlightController {
+ public:
+  TimedController(std::unique_ptr<FlightController> inner, Account& account)
+      : inner_(std::move(inner)), account_(account) {}
+  autopilot::Actions step(const autopilot::Sensed& sensed,
+                          const std::vector<autopilot::Bytes>& received) override {
+    return account_.measure([&] { return inner_->step(sensed, received); });
+  }
+
+ private:
+  std::unique_ptr<FlightController> inner_;
+  Account& account_;
+};
+
+/// What the program of a UAV does; `kIdle` and `kActive` are companions of flight controllers.
+enum class Program { kImu, kCamera, kIdle, kActive };
+constexpr std::string_view kPrograms[] = {"imu", "camera", "idle", "active"};
+bool is_companion(Program program) {
+  return program == Program::kIdle || program == Program::kActive;
+}
+
 /// In the air above the corridor, in a square.
-sim::World make_world(std::size_t uavs, bool with_cameras) {
+sim::World make_world(std::size_t uavs, Program program) {
+  const bool with_cameras = program == Program::kCamera;
   const std::filesystem::path root = TETHER_SOURCE_DIR;
   sim::WorldRequest request;
   request.world = root / "data/worlds/corridor.sdf";
@@ -197,7 +222,8 @@ sim::World make_world(std::size_t uavs, bool with_cameras) {
   return world;
 }
 
-coordinator::RunOptions run_options(const sim::World& world, Duration seconds) {
+coordinator::RunOptions run_options(const sim::World& world, Program program, Duration seconds,
+                                    Account& pilot) {
   coordinator::RunOptions options;
   options.token = kToken;
   options.time_limit = seconds + 10s;
@@ -206,13 +232,26 @@ coordinator::RunOptions run_options(const sim::World& world, Duration seconds) {
     for (const sim::Sensor& sensor : uav.sensors)
       own.timings.emplace_back(uav::PeriodicTiming{
           .period = Duration(std::llround(1e9 / sensor.update_rate_hz)), .delay = {}});
+    if (is_companion(program))
+      own.controller = coordinator::ControllerOptions{
+          .name = "built-in",
+          .estimate = "truth",
+          .make =
+              [&pilot, airframe = uav.airframe, gravity_m_s2 = world.gravity_m_s2] {
+                return std::make_unique<TimedController>(
+                    autopilot::make_built_in({.limits = flight_limits(airframe),
+                                              .hover_thrust_N = airframe.mass_kg * gravity_m_s2,
+                                              .starts_in_air = true}),
+                    pilot);
+              },
+          .period = autopilot::kBuiltInPeriod};
     options.uavs.push_back(own);
   }
   return options;
 }
 
 /// The program of one UAV.
-void fly(const link::Address& address, const std::string& uav, bool with_camera, Duration seconds) {
+void fly(const link::Address& address, const std::string& uav, Program program, Duration seconds) {
   client::ConnectOptions options;
   options.address = address;
   options.token = kToken;
@@ -221,10 +260,17 @@ void fly(const link::Address& address, const std::string& uav, bool with_camera,
   const auto connected = client::connect(std::move(options));
   if (!connected) throw std::runtime_error(connected.failure().message);
   client::Vehicle& vehicle = **connected;
+  while (program == Program::kIdle && vehicle.now() < ExecTime(seconds))
+    if (!vehicle.sleep_for(100ms)) break;
+  while (program == Program::kActive && vehicle.now() < ExecTime(seconds))
+    if (const auto got = vehicle.receive(10ms);
+        !got && got.failure().kind != Failure::Kind::kNothingYet)
+      break;
   double speed_m_s = 0.2;
-  while (vehicle.now() < ExecTime(seconds)) {
-    const bool is_read = with_camera ? static_cast<bool>(vehicle.read<uav::CameraSample>("camera"))
-                                     : static_cast<bool>(vehicle.read<uav::ImuSample>("imu"));
+  while (!is_companion(program) && vehicle.now() < ExecTime(seconds)) {
+    const bool is_read = program == Program::kCamera
+                             ? static_cast<bool>(vehicle.read<uav::CameraSample>("camera"))
+                             : static_cast<bool>(vehicle.read<uav::ImuSample>("imu"));
     if (!is_read || !vehicle.command_velocity({{speed_m_s, 0.0, 0.0}, 0.1})) break;
     speed_m_s = -speed_m_s;
   }
@@ -312,21 +358,23 @@ struct Flight {
   sim::SimulatorWork work;
 };
 
-Flight fly_fleet(const sim::World& world, bool with_cameras, Duration seconds, Accounts& accounts) {
+Flight fly_fleet(const sim::World& world, Program program, Duration seconds, Accounts& accounts) {
   const int threads_ahead =
-      with_cameras ? static_cast<int>(std::max(1U, std::thread::hardware_concurrency())) - 1 : 0;
+      program == Program::kCamera
+          ? static_cast<int>(std::max(1U, std::thread::hardware_concurrency())) - 1
+          : 0;
   TimedSimulator simulator(sim::make_mujoco_simulator(
                                world, [](const Warning&) {}, threads_ahead),
                            accounts);
   const std::filesystem::path file = std::filesystem::temp_directory_path() /
                                      ("tether_fleet_bench." + std::to_string(::getpid()) + ".mcap");
   TimedRecorder recorder(file, accounts.record);
-  coordinator::Coordinator coordinator(simulator, recorder, run_options(world, seconds), [] {
-    return WallTime(std::chrono::steady_clock::now().time_since_epoch());
-  });
+  coordinator::Coordinator coordinator(
+      simulator, recorder, run_options(world, program, seconds, accounts.pilot),
+      [] { return WallTime(std::chrono::steady_clock::now().time_since_epoch()); });
   const auto server = link::listen_tcp({"127.0.0.1", 0}, 60s);
   const pid_t programs = start_threads(world.uavs.size(), [&](std::size_t i) {
-    fly(server->address(), world.uavs[i].name, with_cameras, seconds);
+    fly(server->address(), world.uavs[i].name, program, seconds);
   });
   const Duration begin = cpu_of_thread();
   const Duration begin_of_all = os::read_clock(CLOCK_PROCESS_CPUTIME_ID);
@@ -346,12 +394,12 @@ Flight fly_fleet(const sim::World& world, bool with_cameras, Duration seconds, A
   return flight;
 }
 
-void print_row(std::size_t uavs, bool with_cameras, Duration seconds) {
-  const sim::World world = make_world(uavs, with_cameras);
+void print_row(std::size_t uavs, Program program, Duration seconds) {
+  const sim::World world = make_world(uavs, program);
   Accounts closed(false);
-  const Flight whole = fly_fleet(world, with_cameras, seconds, closed);
+  const Flight whole = fly_fleet(world, program, seconds, closed);
   Accounts parts(true);
-  const Flight measured = fly_fleet(world, with_cameras, seconds, parts);
+  const Flight measured = fly_fleet(world, program, seconds, parts);
   Duration barrier = measured.coordinator;
   for (const Account* part : parts.all())
     barrier -= part->sum() + 2 * part->calls() * Account::overhead();
@@ -359,16 +407,17 @@ void print_row(std::size_t uavs, bool with_cameras, Duration seconds) {
   const double uav_seconds = static_cast<double>(uavs) * whole.seconds;
   const auto each_ms = [&](Duration d) { return 1e3 * to_seconds(d) / uav_seconds; };
   fmt::print(
-      "{:5} {:>7} | {:6.2f} {:8.2f} | {:7.2f} {:7.2f} {:7.2f} {:7.2f} {:7.2f} | {:7.2f} |"
+      "{:5} {:>7} | {:6.2f} {:8.2f} | {:7.2f} {:7.2f} {:7.2f} {:7.2f} {:7.2f} {:7.2f} | {:7.2f} |"
       " {:6.2f} {:6.2f} | {:6.1f} {:6.1f}\n",
-      uavs, with_cameras ? "camera" : "imu", each_ms(whole.wall),
+      uavs, kPrograms[static_cast<std::size_t>(program)], each_ms(whole.wall),
       each_ms(whole.coordinator + whole.ahead), each_ms(barrier), each_ms(parts.physics.sum()),
       each_ms(parts.sensors.sum() + measured.ahead), each_ms(parts.truth.sum()),
-      each_ms(parts.record.sum()), each_ms(whole.programs), each_ms(engine_alone(world, seconds)),
+      each_ms(parts.record.sum()), each_ms(parts.pilot.sum()), each_ms(whole.programs),
+      each_ms(engine_alone(world, seconds)),
       each_ms(bare_exchanges(uavs, whole.interactions / uavs)),
       static_cast<double>(whole.interactions) / uav_seconds,
       static_cast<double>(whole.bytes) * 1e-3 / uav_seconds);
-  if (with_cameras)
+  if (program == Program::kCamera)
     fmt::print("{} pictures, {} of them drawn ahead, {} in vain\n", whole.work.pictures,
                whole.work.drawn_ahead, whole.work.drawn_in_vain);
   std::fflush(stdout);
@@ -381,15 +430,18 @@ int main(int argc, char** argv) {
   using namespace tether;
   const auto seconds = std::chrono::seconds(argc > 1 ? std::atoi(argv[1]) : 10);
   fmt::print(
-      "ms for each UAV and second of ST   | CPU time of the host, by part           |"
+      "ms for each UAV and second of ST   | CPU time of the host, by part                   |"
       " CPU of  |  yardsticks   | each second\n"
-      " UAVs program |   wall      CPU | barrier physics sensors   truth  record |"
+      " UAVs program |   wall      CPU | barrier physics sensors   truth  record   pilot |"
       " programs| engine   wire |  calls  kB\n");
   try {
     const std::string_view only = argc > 2 ? argv[2] : "";
     for (const std::size_t uavs : {1U, 16U, 64U, 256U})
-      if (only.empty() || only == std::to_string(uavs)) print_row(uavs, false, seconds);
-    if (only.empty() || only == "camera") print_row(16, true, seconds);
+      if (only.empty() || only == std::to_string(uavs)) print_row(uavs, Program::kImu, seconds);
+    if (only.empty() || only == "camera") print_row(16, Program::kCamera, seconds);
+    for (const Program program : {Program::kIdle, Program::kActive})
+      if (only.empty() || only == kPrograms[static_cast<std::size_t>(program)])
+        for (const std::size_t uavs : {1U, 64U}) print_row(uavs, program, seconds);
   } catch (const std::exception& e) {
     fmt::print(stderr, "{}\n", e.what());
     return 3;
