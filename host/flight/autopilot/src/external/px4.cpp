@@ -9,6 +9,7 @@
 #include <map>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -27,9 +28,10 @@ enum Port : int {
   kSimulatorPort = 4560,   // TCP: PX4 connects to it
   kCompanionPort = 14540,  // UDP: PX4 sends to it …
   kOwnPort = 14580,        // … and listens here
-  kGroundPort = 18570,     // PX4 listens here, too
 };
-std::uint16_t number(Port port, const ExternalSettings& settings) {
+// Where PX4 would listen to others: a ground station, a payload and a gimbal.
+constexpr int kOtherPorts[] = {18570, 14280, 13030};
+std::uint16_t number(int port, const ExternalSettings& settings) {
   return static_cast<std::uint16_t>(port + settings.instance);
 }
 
@@ -79,16 +81,25 @@ class Px4 final : public ExternalController {
  public:
   explicit Px4(const ExternalSettings& settings)
       : Px4(settings, Ports{{number(kSimulatorPort, settings), "PX4"},
-                            {number(kCompanionPort, settings), "PX4"}}) {}
+                            {number(kCompanionPort, settings), "PX4"},
+                            closed_ports(settings)}) {}
 
  private:
   struct Ports {
     TcpPort simulator;
     UdpPort companion;
+    std::vector<UdpPort> closed;
   };
+  // Only its companion can command it, and a ground station by way of this process.
+  static std::vector<UdpPort> closed_ports(const ExternalSettings& settings) {
+    std::vector<UdpPort> ports;
+    for (const int port : kOtherPorts) ports.emplace_back(number(port, settings), "PX4");
+    return ports;
+  }
   Px4(const ExternalSettings& settings, Ports&& ports)
       : ExternalController(settings, "PX4", std::move(ports.companion), px4_command(settings)),
-        simulator_(std::move(ports.simulator)) {
+        simulator_(std::move(ports.simulator)),
+        closed_(std::move(ports.closed)) {
     link_.set_peer(number(kOwnPort, settings));
     connect();
   }
@@ -182,6 +193,7 @@ class Px4 final : public ExternalController {
   }
 
   TcpPort simulator_;
+  std::vector<UdpPort> closed_;
   mavlink::Decoder decoder_;
   std::uint8_t sequence_ = 0;
   std::optional<mavlink::Message> controls_;
@@ -195,8 +207,7 @@ class Px4 final : public ExternalController {
 }  // namespace
 
 std::unique_ptr<FlightController> start_px4(const ExternalSettings& settings) {
-  // It binds these itself.
-  for (const Port port : {kOwnPort, kGroundPort}) (void)UdpPort(number(port, settings), "PX4");
+  (void)UdpPort(number(kOwnPort, settings), "PX4");  // it binds this itself
   return std::make_unique<Px4>(settings);
 }
 
