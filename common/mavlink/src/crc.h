@@ -9,6 +9,7 @@ namespace tether::mavlink {
 /// The checksum of MAVLink: CRC-16/MCRF4XX (ITU X.25 without the final inversion).
 class Crc {
  public:
+  explicit Crc(std::uint16_t initial = 0xFFFF) : value_(initial) {}
   void add(std::uint8_t byte) {
     auto t = static_cast<std::uint8_t>(byte ^ (value_ & 0xFFU));
     t = static_cast<std::uint8_t>(t ^ (t << 4U));
@@ -23,7 +24,7 @@ class Crc {
   std::uint16_t value() const { return value_; }
 
  private:
-  std::uint16_t value_ = 0xFFFF;
+  std::uint16_t value_;
 };
 
 }  // namespace tether::mavlink

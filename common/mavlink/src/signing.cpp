@@ -1,3 +1,4 @@
+#include "crc.h"
 #include "sha256.h"
 
 #include <algorithm>
@@ -22,6 +23,41 @@ std::array<std::uint8_t, 6> signature_of(const SigningKey& key,
   std::array<std::uint8_t, 6> signature{};
   std::copy_n(digest.begin(), signature.size(), signature.begin());
   return signature;
+}
+
+using Bytes = std::vector<std::uint8_t>;
+using Verdict = SignatureChecker::Verdict;
+
+constexpr std::uint8_t kSigned = 1;  // a flag
+constexpr std::size_t kFlags = 2, kSystem = 5, kComponent = 6;
+
+/// How long the frame is that begins there, if it is whole; 0: none.
+std::size_t whole_frame(std::span<const std::uint8_t> bytes) {
+  constexpr std::uint8_t kVersion1 = 0xFE, kVersion2 = 0xFD;
+  constexpr std::size_t kBeside1 = 8, kBeside2 = 12;
+  if (bytes.size() < kBeside1 || (bytes[0] != kVersion1 && bytes[0] != kVersion2)) return 0;
+  std::size_t size = bytes[1] + kBeside1;
+  if (bytes[0] == kVersion2)
+    size = bytes[1] + kBeside2 + ((bytes[kFlags] & kSigned) != 0 ? kSignatureBytes : 0);
+  return size <= bytes.size() ? size : 0;
+}
+bool is_of_version_2(std::span<const std::uint8_t> frame) {
+  return frame[0] == 0xFD;
+}
+
+/// Of a frame without signature, with the flag that it has one or has none. The checksum is linear:
+/// a bit that changes in a message changes it as in one of zeros, so that the message need not be
+/// in the table.
+Bytes with_other_flag(std::span<const std::uint8_t> frame) {
+  Bytes other(frame.begin(), frame.end());
+  other[kFlags] ^= kSigned;
+  Crc change(0);
+  change.add(kSigned);
+  const std::size_t checksum = frame.size() - 2;
+  for (std::size_t i = kFlags + 1; i <= checksum; ++i) change.add(std::uint8_t{0});
+  other[checksum] ^= static_cast<std::uint8_t>(change.value() & 0xFFU);
+  other[checksum + 1] ^= static_cast<std::uint8_t>(change.value() >> 8U);
+  return other;
 }
 
 }  // namespace
@@ -65,8 +101,43 @@ std::array<std::uint8_t, kSignatureBytes> Signer::sign(std::span<const std::uint
   return end;
 }
 
-SignatureChecker::Verdict SignatureChecker::check(std::span<const std::uint8_t> frame,
-                                                  std::uint8_t system, std::uint8_t component) {
+Bytes SignedLink::sign(std::span<const std::uint8_t> datagram, std::uint64_t timestamp) {
+  signer_.advance_to(std::max(timestamp, checker_.newest()));
+  Bytes all;
+  while (!datagram.empty()) {
+    const std::size_t size = whole_frame(datagram);
+    const auto part = datagram.first(std::max<std::size_t>(size, 1));
+    datagram = datagram.subspan(part.size());
+    if (size == 0 || !is_of_version_2(part) || (part[kFlags] & kSigned) != 0) {
+      all.insert(all.end(), part.begin(), part.end());
+      continue;
+    }
+    const Bytes frame = with_other_flag(part);
+    const auto signature = signer_.sign(frame);
+    all.insert(all.end(), frame.begin(), frame.end());
+    all.insert(all.end(), signature.begin(), signature.end());
+  }
+  return all;
+}
+
+SignedLink::Opened SignedLink::open(std::span<const std::uint8_t> datagram) {
+  Opened opened;
+  while (!datagram.empty()) {
+    const std::size_t size = whole_frame(datagram);
+    const auto frame = datagram.first(std::max<std::size_t>(size, 1));
+    datagram = datagram.subspan(frame.size());
+    if (size == 0) continue;
+    if (!is_of_version_2(frame) || (frame[kFlags] & kSigned) == 0) return {};
+    opened.verdict = checker_.check(frame, frame[kSystem], frame[kComponent]);
+    if (opened.verdict != Verdict::kRight) return {opened.verdict};
+    const Bytes own = with_other_flag(frame.first(size - kSignatureBytes));
+    opened.frames.insert(opened.frames.end(), own.begin(), own.end());
+  }
+  return opened;
+}
+
+Verdict SignatureChecker::check(std::span<const std::uint8_t> frame, std::uint8_t system,
+                                std::uint8_t component) {
   assert(frame.size() > kSignatureBytes);
   const auto end = frame.last(kSignatureBytes);
   const auto expected = signature_of(key_, frame.first(frame.size() - 6));

@@ -1,9 +1,11 @@
 #include <algorithm>
+#include <array>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include <tether/base/random.h>
 #include <tether/mavlink/frame.h>
 
 namespace tether::mavlink {
@@ -159,6 +161,76 @@ TEST(SignedDecoder, FindsFramesInAnyPiecesAndBetweenGarbage) {
   std::size_t frames = 0;
   for (const std::uint8_t byte : stream) frames += pieces.push({&byte, 1}).size();
   EXPECT_EQ(frames, 20U);
+}
+
+// One of ours, and one of a message that is not in the table.
+std::vector<std::uint8_t> unsigned_datagram() {
+  auto datagram = encode(Message("PING").set("seq", 5), {1, 191}, 9);
+  const std::array<std::uint8_t, 15> unknown = {0xFD, 3, 0, 0, 7, 1,    191, 0xFE,
+                                                0xFF, 0, 1, 2, 3, 0x12, 0x34};
+  datagram.insert(datagram.end(), unknown.begin(), unknown.end());
+  return datagram;
+}
+
+TEST(SignedLink, SignsFramesOfAnyMessageAndTakesSignaturesOff) {
+  SignedLink here(kKey, 1, kNow), there(kKey, 2, kNow);
+  const auto datagram = unsigned_datagram();
+  const auto bytes = here.sign(datagram, kNow + 7);
+  EXPECT_EQ(bytes.size(), datagram.size() + 2 * kSignatureBytes);
+  EXPECT_EQ(Decoder(&kKey).push_datagram(bytes).size(), 1U) << "as others read it";
+  const auto opened = there.open(bytes);
+  EXPECT_EQ(opened.verdict, SignatureChecker::Verdict::kRight);
+  EXPECT_EQ(opened.frames, datagram);
+  EXPECT_EQ(here.sign({}, kNow), std::vector<std::uint8_t>());
+}
+
+TEST(SignedLink, RefusesWhatIsNotSignedOrWronglyOrComesAgain) {
+  using enum SignatureChecker::Verdict;
+  SignedLink other(key_of_passphrase("another"), 1, kNow), sender(kKey, 1, kNow);
+  SignedLink late(kKey, 1, kNow - kTimestampsPerMinute - 100), there(kKey, 2, kNow);
+  const auto datagram = unsigned_datagram();
+  EXPECT_EQ(there.open({}).verdict, kNotSigned);
+  EXPECT_EQ(there.open(datagram).verdict, kNotSigned);
+  EXPECT_EQ(there.open(other.sign(datagram, 0)).verdict, kWrong);
+  EXPECT_EQ(there.open(late.sign(datagram, 0)).verdict, kOld) << "recorded before it began";
+  const auto bytes = sender.sign(datagram, 0);
+  EXPECT_EQ(there.open(bytes).verdict, kRight);
+  const auto again = there.open(bytes);
+  EXPECT_EQ(again.verdict, kOld);
+  EXPECT_TRUE(again.frames.empty());
+  auto mixed = sender.sign(datagram, 0);
+  mixed.insert(mixed.end(), datagram.begin(), datagram.end());
+  EXPECT_EQ(there.open(mixed).verdict, kNotSigned) << "as a whole";
+  const std::vector<std::uint8_t> old_version = {0xFE, 0, 1, 1, 1, 0, 0, 0};
+  EXPECT_EQ(there.open(old_version).verdict, kNotSigned);
+  EXPECT_EQ(there.open(sender.sign(datagram, 0)).verdict, kRight) << "and goes on";
+}
+
+// The clock of a controller may be behind.
+TEST(SignedLink, TakesTheTimeOfTheOtherEnd) {
+  SignedLink ahead(kKey, 1, kNow + 100 * kTimestampsPerMinute), behind(kKey, 2, kNow);
+  EXPECT_EQ(behind.open(ahead.sign(unsigned_datagram(), 0)).verdict,
+            SignatureChecker::Verdict::kRight);
+  EXPECT_EQ(ahead.open(behind.sign(unsigned_datagram(), kNow)).verdict,
+            SignatureChecker::Verdict::kRight);
+}
+
+// Whatever others send, an honest end is heard.
+TEST(SignedLink, HonestFramesAreTakenBetweenAnyBytes) {
+  KeyedRandom random({.seed = 41});
+  SignedLink honest(kKey, 1, kNow), there(kKey, 2, kNow);
+  for (int i = 0; i < 2'000; ++i) {
+    std::vector<std::uint8_t> bytes(random.bits() % 300);
+    for (auto& byte : bytes) byte = static_cast<std::uint8_t>(random.bits());
+    if (random.bits() % 2 == 0) {
+      bytes = honest.sign(unsigned_datagram(), 0);
+      bytes[random.bits() % bytes.size()] ^= static_cast<std::uint8_t>(1U << random.bits() % 8);
+    }
+    ASSERT_NE(there.open(bytes).frames, unsigned_datagram()) << i;
+    ASSERT_EQ(there.open(honest.sign(unsigned_datagram(), 0)).verdict,
+              SignatureChecker::Verdict::kRight)
+        << i;
+  }
 }
 
 }  // namespace

@@ -46,6 +46,15 @@ TEST_F(FlightControllerTest, FliesACompanionsSquareAndTheRecordHasTheirMessages)
       << "a topic for each message, for Foxglove";
 }
 
+TEST_F(FlightControllerTest, TenCompanionsFlyEachItsSquare) {
+  uavs_ = 10;
+  ASSERT_EQ(fly("0.01"), 0) << said_;
+  EXPECT_TRUE(result_["audit"]["passed"]) << result_["audit"]["summary"];
+  ASSERT_EQ(result_["suts"].size(), 10U);
+  for (const auto& sut : result_["suts"])
+    for (const auto& error_m : sut["details"]["errors_m"]) EXPECT_LT(error_m.get<double>(), 0.05);
+}
+
 // The program sends a set-point each 50 ms.
 TEST_F(FlightControllerTest, SetPointsThatComeTooLateEndOffboard) {
   ASSERT_EQ(fly("0.01", R"({ kind = "built-in", parameters = { COM_OF_LOSS_T = 0.03 } })"), 0)
@@ -120,7 +129,12 @@ TEST_F(FlightControllerTest, AGroundStationThatMayCommandIsNoted) {
   Viewer viewer;
   EXPECT_LE(fly("0.01", viewer.settings("commands")), 1) << said_;  // it may have landed in time
   EXPECT_NE(result_.dump().find("a ground station could command"), std::string::npos);
-  EXPECT_NE(read_record(folder_ / "out").header.machine, "") << "it need not repeat";
+  const record::Record record = read_record(folder_ / "out");
+  EXPECT_NE(record.header.machine, "") << "it need not repeat";
+  EXPECT_TRUE(std::ranges::any_of(record.autopilot, [](const auto& entry) {
+    return entry.message.of_station && entry.message.name == "COMMAND_LONG";
+  }));
+  EXPECT_TRUE(result_["audit"]["passed"]) << result_["audit"]["summary"];
 }
 
 // It cannot read its telemetry as fast as this comes, and what waits for it is older and older.

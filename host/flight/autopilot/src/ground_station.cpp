@@ -21,13 +21,13 @@ class WithGroundStation final : public FlightController {
   Actions step(const Sensed& sensed, const std::vector<Bytes>& received) override {
     // A station that sends without end must not hold the run.
     constexpr std::size_t kMostOfAStep = 64;
+    std::vector<Bytes> of_station = station_.receive(kMostOfAStep);
+    if (!may_command_)
+      for (const Bytes& bytes : std::exchange(of_station, {})) deny(bytes);
     std::vector<Bytes> all = received;
-    for (Bytes& bytes : station_.receive(kMostOfAStep))
-      if (may_command_)
-        all.push_back(std::move(bytes));
-      else
-        deny(bytes);
+    all.insert(all.end(), of_station.begin(), of_station.end());
     Actions actions = controller_->step(sensed, all);
+    actions.of_station = std::move(of_station);
     for (const Bytes& bytes : actions.sent) station_.send(bytes);
     return actions;
   }

@@ -1,5 +1,7 @@
 #include "flight.h"
 
+#include <tether/base/random.h>
+
 namespace tether::autopilot {
 namespace {
 
@@ -57,6 +59,51 @@ TEST(BuiltIn, ReadsFramesAmongGarbage) {
   flight.send_bytes(amid);
   flight.run(0.004);
   EXPECT_EQ(flight.count("TIMESYNC"), 1U);
+}
+
+/// Of 256 systems: to others, half of one, with a wrong checksum, of version 1, or no frame at all.
+Bytes of_others(KeyedRandom& random) {
+  const auto types = mavlink::message_types();
+  Message message(types[random.bits() % types.size()]);
+  for (const mavlink::Field& field : message.type().fields)
+    message.set(field.name, static_cast<std::int64_t>(random.bits()), random.bits() % field.count);
+  if (message.type().field("target_system") != nullptr)
+    message.set("target_system", 2 + random.bits() % 250);
+  Bytes bytes = mavlink::encode(
+      message, {static_cast<std::uint8_t>(random.bits()), static_cast<std::uint8_t>(random.bits())},
+      0);
+  const std::uint32_t kind = random.bits() % 5;
+  if (kind == 0) bytes.resize(bytes.size() / 2);
+  if (kind == 1) bytes[10 + random.bits() % (bytes.size() - 10)] ^= 1;
+  if (kind == 2) bytes[0] = 0xFE;
+  if (kind == 3)
+    for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(random.bits());
+  return bytes;
+}
+
+TEST(BuiltIn, AnHonestCompanionIsUnharmedByWhatOthersSend) {
+  KeyedRandom random({.seed = 41});
+  Flight flight;
+  flight.take_off();
+  const Message to = position_target(2.0, 0.0, -2.5);
+  flight.stream(to, 1.2);
+  ASSERT_EQ(flight.mode(6), kAccepted);
+  std::uint32_t asked = 0;
+  flight.heard.clear();
+  flight.run(6.0, [&] {
+    for (std::uint32_t i = random.bits() % 20; i > 0; --i) flight.send_bytes(of_others(random));
+    flight.send(to);
+    flight.send(Message("PING").set("seq", ++asked), {42, 8});
+  });
+  std::uint32_t answered = 0;
+  for (const Message& m : flight.heard) {
+    if (m.is("PING") && m.integer("target_system") == 42) {
+      EXPECT_EQ(m.integer("seq"), ++answered);
+    }
+  }
+  EXPECT_EQ(answered, asked);
+  EXPECT_EQ(flight.shown_mode(), "OFFBOARD");
+  EXPECT_LT(norm(flight.body.p_WB - uav::Vec3{0, 2.0, 2.5}), 0.1);
 }
 
 // The estimate goes where it was sent; the vehicle is beside by the drift.

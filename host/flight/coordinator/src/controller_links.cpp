@@ -76,7 +76,7 @@ std::optional<ControllerLinks::Arrival> ControllerLinks::handle_next(Stepper& st
   port.for_companion.pop_front();
   schedule(uav);
   const SimTime at = message.arrives_at;
-  log(stepper.st(), uav, false, message,
+  log(stepper.st(), uav, Direction::kFrom, message,
       inboxes.is_full_for_controller(uav) ? record::kInboxFull : record::kDelivered);
   const bool has_arrived =
       inboxes.accept(uav, {link::kAutopilot, message.sequence, message.sent_at, at, message.bytes});
@@ -88,24 +88,29 @@ void ControllerLinks::step(std::size_t uav, Stepper& stepper) {
   const SimTime at = port.next_step();
   ++port.steps;
   std::vector<autopilot::Bytes> received;
+  std::vector<Message> taken;
   while (!port.for_controller.empty() && port.for_controller.front().arrives_at <= at) {
-    const Message message = std::move(port.for_controller.front());
+    taken.push_back(std::move(port.for_controller.front()));
     port.for_controller.pop_front();
-    if (message.is_lost) {
-      log(at, uav, true, message, record::kQueueFull);
-      continue;
-    }
-    received.push_back(*message.bytes);
-    log(at, uav, true, message, record::kDelivered, at);
+    if (!taken.back().is_lost) received.push_back(*taken.back().bytes);
   }
   const autopilot::Sensed sensed = stepper.sense(uav);
   autopilot::Actions actions = [&] {
     try {
       return port.controller->step(sensed, received);
     } catch (const Error& e) {
+      log_taken(at, uav, taken, {});
       throw SimulatorFailure(e.what());
     }
   }();
+  log_taken(at, uav, taken, actions.refused);
+  for (autopilot::Bytes& bytes : actions.of_station)
+    log(at, uav, Direction::kOfStation,
+        {.sequence = ++port.of_station,
+         .sent_at = at,
+         .arrives_at = at,
+         .bytes = std::make_shared<const std::vector<std::uint8_t>>(std::move(bytes))},
+        record::kDelivered, at);
   if (actions.setpoint) stepper.fly(uav, *actions.setpoint);
   const SimTime sent_at = at + kAfterBoundary;
   for (autopilot::Bytes& bytes : actions.sent) {
@@ -117,10 +122,25 @@ void ControllerLinks::step(std::size_t uav, Stepper& stepper) {
       message.arrives_at = *arrives_at;
       port.for_companion.push_back(std::move(message));
     } else {
-      log(at, uav, false, message, record::kQueueFull);
+      log(at, uav, Direction::kFrom, message, record::kQueueFull);
     }
   }
   schedule(uav);
+}
+
+void ControllerLinks::log_taken(SimTime at, std::size_t uav, const std::vector<Message>& taken,
+                                const std::vector<autopilot::Actions::Refusal>& refused) {
+  std::size_t received = 0;
+  auto refusal = refused.begin();
+  for (const Message& message : taken) {
+    if (message.is_lost) {
+      log(at, uav, Direction::kTo, message, record::kQueueFull);
+    } else if (refusal != refused.end() && refusal->received == received++) {
+      log(at, uav, Direction::kTo, message, (refusal++)->why);
+    } else {
+      log(at, uav, Direction::kTo, message, record::kDelivered, at);
+    }
+  }
 }
 
 void ControllerLinks::schedule(std::size_t uav) {
@@ -136,18 +156,19 @@ void ControllerLinks::log_in_transit(SimTime st) {
   for (std::size_t uav = 0; uav < ports_.size(); ++uav) {
     for (const Message& message : ports_[uav].for_controller)
       if (message.sent_at <= st)
-        log(st, uav, true, message, message.is_lost ? record::kQueueFull : record::kWaiting);
+        log(st, uav, Direction::kTo, message,
+            message.is_lost ? record::kQueueFull : record::kWaiting);
     for (const Message& message : ports_[uav].for_companion)
-      log(st, uav, false, message, record::kWaiting);
+      log(st, uav, Direction::kFrom, message, record::kWaiting);
   }
 }
 
-void ControllerLinks::log(SimTime st, std::size_t uav, bool to_controller, const Message& message,
+void ControllerLinks::log(SimTime st, std::size_t uav, Direction direction, const Message& message,
                           std::string_view outcome, std::optional<SimTime> acted_at) {
   std::uint64_t part = 0;
   for (autopilot::Decoded& decoded : autopilot::decode(*message.bytes))
     log_->link(st, {.uav = uavs_[uav],
-                    .to_controller = to_controller,
+                    .to_controller = direction == Direction::kTo,
                     .sequence = message.sequence,
                     .part = part++,
                     .bytes = message.bytes->size(),
@@ -156,7 +177,8 @@ void ControllerLinks::log(SimTime st, std::size_t uav, bool to_controller, const
                     .acted_at = acted_at,
                     .outcome = std::string(outcome),
                     .name = std::move(decoded.name),
-                    .fields = std::move(decoded.fields_json)});
+                    .fields = std::move(decoded.fields_json),
+                    .of_station = direction == Direction::kOfStation});
 }
 
 }  // namespace tether::coordinator

@@ -77,7 +77,7 @@ class ControllerLinks {
     std::unique_ptr<autopilot::FlightController> controller;
     Duration period{0};
     std::int64_t steps = 0;
-    std::uint64_t sent = 0;
+    std::uint64_t sent = 0, of_station = 0;
     Line to_controller{0.0, Duration(0)}, to_companion{0.0, Duration(0)};
     std::deque<Message> for_controller, for_companion;
 
@@ -85,7 +85,11 @@ class ControllerLinks {
   };
   void step(std::size_t uav, Stepper& stepper);
   void schedule(std::size_t uav);
-  void log(SimTime st, std::size_t uav, bool to_controller, const Message& message,
+  enum class Direction { kTo, kFrom, kOfStation };
+  /// What a step has received.
+  void log_taken(SimTime at, std::size_t uav, const std::vector<Message>& taken,
+                 const std::vector<autopilot::Actions::Refusal>& refused);
+  void log(SimTime st, std::size_t uav, Direction direction, const Message& message,
            std::string_view outcome, std::optional<SimTime> acted_at = std::nullopt);
 
   std::vector<std::string> uavs_;

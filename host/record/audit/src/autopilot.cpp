@@ -37,13 +37,16 @@ class AutopilotCheck {
     for (const bool to_controller : {true, false}) {
       std::vector<const LineEntry*> line;
       for (const LineEntry& entry : record_.autopilot)
-        if (entry.message.uav == sut_.uav && entry.message.to_controller == to_controller)
+        if (entry.message.uav == sut_.uav && !entry.message.of_station &&
+            entry.message.to_controller == to_controller)
           line.push_back(&entry);
       std::ranges::stable_sort(line, {}, [](const LineEntry* entry) {
         return std::pair(entry->message.sequence, entry->message.part);
       });
       check_line(line);
     }
+    for (const LineEntry& entry : record_.autopilot)
+      if (entry.message.uav == sut_.uav && entry.message.of_station) check_station(entry);
   }
 
  private:
@@ -53,7 +56,7 @@ class AutopilotCheck {
     std::uint64_t next = 1;
     for (const LineEntry* entry : line) {
       const AutopilotMessage& m = entry->message;
-      if (!kLineOutcomes.contains(m.outcome))
+      if (!kLineOutcomes.contains(m.outcome) && !(m.to_controller && m.is_refused()))
         report_.add(0, *entry, "unknown outcome \"{}\" of a message", m.outcome);
       check_sent(*entry);
       if (before != nullptr && before->sequence == m.sequence) {
@@ -72,6 +75,16 @@ class AutopilotCheck {
       check_taken(*entry);
       before = &m;
     }
+  }
+
+  // What a ground station sends is outside of time: a step takes it, and nothing is before.
+  void check_station(const LineEntry& entry) {
+    const AutopilotMessage& m = entry.message;
+    if (m.to_controller || m.outcome != record::kDelivered || m.acted_at != m.at ||
+        m.sent_at != m.at)
+      report_.add(0, entry, "message of a ground station that no step took");
+    else if (wide(m.at) % wide(controller_.period) != 0)
+      report_.add(2, entry, "message of a ground station taken at {}, between steps", ns(m.at));
   }
 
   void check_same(const LineEntry& entry, const AutopilotMessage& before) {

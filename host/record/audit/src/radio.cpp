@@ -66,7 +66,7 @@ class RadioCheck {
     for (const auto& [uav, row] : rows_of(record_)) {
       std::deque<Inboxed> inbox;
       for (const auto& [at, order, m] : record_.autopilot)
-        if (m.uav == uav && !m.to_controller && m.part == 0 && m.outcome == record::kDelivered)
+        if (m.uav == uav && m.of_controller() && m.part == 0 && m.outcome == record::kDelivered)
           inbox.push_back({kAutopilot, m.sequence, m.at, indices_[uav]});
       for (const auto& [at, order, m] : record_.radio)
         if (m.to == uav && m.outcome == record::kDelivered)

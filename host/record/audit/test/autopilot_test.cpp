@@ -117,6 +117,27 @@ TEST(Autopilot, InFreeRunningAStepMayHavePassed) {
   EXPECT_TRUE(rules_of(record).contains(2));
 }
 
+TEST(Autopilot, RefusedMessagesAndThoseOfAGroundStationAreSound) {
+  Record record = flight();
+  AutopilotMessage& refused = message(record, true, 12);
+  refused.outcome = "old_signature";
+  refused.acted_at.reset();
+  AutopilotMessage of_station;
+  of_station.uav = "a";
+  of_station.of_station = true;
+  of_station.sequence = 1;
+  of_station.outcome = "delivered";
+  of_station.sent_at = of_station.at = from_ns<SimTime>(2 * kControllerPeriod_ns);
+  of_station.acted_at = of_station.at;
+  record.autopilot.push_back({of_station.at, 0, of_station});
+  EXPECT_TRUE(audit(record).findings.empty());
+  record.autopilot.back().message.at += kNs;
+  EXPECT_TRUE(rules_of(record).contains(0));
+  record.autopilot.back().message.sent_at += kNs;
+  *record.autopilot.back().message.acted_at += kNs;
+  EXPECT_TRUE(rules_of(record).contains(2));
+}
+
 TEST_P(AutopilotTest, IsFound) {
   Record record = flight(921'600.0);
   GetParam().plant(record);
@@ -177,6 +198,11 @@ const Planted kOfAutopilots[] = {
     {"AnUnknownOutcome",
      {0},
      [](Record& r) { message(r, false, 5).outcome = message(r, false, 5, 1).outcome = "eaten"; }},
+    {"RefusedBySut",
+     {0},
+     [](Record& r) {
+       message(r, false, 5).outcome = message(r, false, 5, 1).outcome = "not_signed";
+     }},
     {"LostOnALineWithRoom", {3, 0}, [](Record& r) { message(r, true, 12).outcome = "queue_full"; }},
     {"LostOnALineWithoutBaud",
      {3, 0},

@@ -54,7 +54,7 @@ std::string refusal_of(const record::Record& record, const std::string& uav) {
   std::string refusal;
   for (const auto& logged : record.autopilot) {
     const record::AutopilotMessage& m = logged.message;
-    if (m.uav != uav || m.to_controller || m.name != "STATUSTEXT") continue;
+    if (m.uav != uav || !m.of_controller() || m.name != "STATUSTEXT") continue;
     const auto fields = nlohmann::json::parse(m.fields, nullptr, false);
     if (!fields.is_object() || fields.value("severity", kWarning + 1) > kWarning) continue;
     if (fields.value("chunk_seq", 0) == 0) refusal.clear();
@@ -93,6 +93,14 @@ void check_companion(const record::Record& record, bool nothing, SutResult& sut,
   const auto doubt = [&](const std::string& what) {
     warnings.push_back({Consequence::kDoubtful, {}, "UAV '" + sut.uav + "'", what});
   };
+  if (const auto refused = std::ranges::count_if(record.autopilot, [&](const auto& logged) {
+        return logged.message.uav == sut.uav && logged.message.part == 0 &&
+               logged.message.is_refused();
+      }))
+    doubt(
+        fmt::format("has a flight controller that refused {} message{} of its program: "
+                    "not signed with the key of 'signing_key_file', or sent again",
+                    refused, refused > 1 ? "s" : ""));
   const bool has_sent = std::ranges::any_of(record.autopilot, is_sent);
   if (nothing)
     return doubt("has a program that did nothing with it: no sensor was read, and nothing sent");

@@ -323,12 +323,13 @@ TEST_F(MakeResult, ACompanionHasFlownOnlyIfItHasSentSomething) {
   record::AutopilotMessage& sent = record.autopilot.emplace_back().message;
   sent.uav = "uav1";
   sent.to_controller = true;
-  sent.outcome = record::kDelivered;
   sent.name = "HEARTBEAT";
+  sent.outcome = "wrong_signature";
+  EXPECT_THAT(to_line(make(record, kReached).warnings.at(0)), HasSubstr("refused 1 message "));
+  sent.outcome = record::kDelivered;
   result = make(record, kReached);
   EXPECT_EQ(result.outcome, Outcome::kGoalReached);
-  ASSERT_EQ(result.warnings.size(), 1u);
-  EXPECT_THAT(to_line(result.warnings[0]), HasSubstr("never left its start"));
+  EXPECT_THAT(to_line(result.warnings.at(0)), HasSubstr("never left its start"));
   EXPECT_EQ(make(record, {}).warnings.size(), 1u) << "nor did it by the end of the time";
   for (const char* fields : {R"({"severity": 6, "text": "Welcome"})",
                              R"({"severity": 2, "text": "Arming denied: ", "chunk_seq": 0})",

@@ -9,6 +9,7 @@
 #include <tether/autopilot/built_in.h>
 #include <tether/autopilot/external.h>
 #include <tether/autopilot/ground_station.h>
+#include <tether/autopilot/signing.h>
 #include <tether/base/error.h>
 
 namespace tether::runner {
@@ -96,6 +97,10 @@ ControllerOptions controller_options(const scenario::FlightController& controlle
     options.make = [make = options.make, what = controller.ground_station,
                     port = controller.ground_station_port] {
       return with_ground_station(make(), what, port);
+    };
+  if (!controller.signing_key.empty())
+    options.make = [make = options.make, key = controller.signing_key] {
+      return with_signing(make(), key);
     };
   options.repeats =
       options.repeats && controller.ground_station != autopilot::GroundStation::kCommands;

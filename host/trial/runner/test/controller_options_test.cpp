@@ -108,6 +108,14 @@ TEST(ControllerOptions, DoNotRepeatIfAGroundStationMayCommand) {
   }
 }
 
+TEST(ControllerOptions, SignTheLinkWithTheKeyOfTheScenario) {
+  const sim::FakeSimulator simulator(sim::make_fake_world(1));
+  scenario::FlightController controller;
+  controller.signing_key = std::string(32, 'k');
+  const auto made = controller_options(controller, simulator, 0, 1, {}).make();
+  EXPECT_EQ(made->step({}, {{1, 2, 3}}).refused.size(), 1U);
+}
+
 TEST(ControllerOptions, DescribesOneThatTheUserBrings) {
   const sim::FakeSimulator simulator(sim::make_fake_world(1, std::chrono::microseconds(3'000)));
   for (const autopilot::External& kind : autopilot::externals()) {

@@ -55,21 +55,48 @@ class SignatureChecker {
  public:
   enum class Verdict {
     kRight,
+    kNotSigned,
     kWrong,  ///< another key, or a frame that was changed
     kOld,    ///< the timestamp is not later than that of the frame before from the same (link,
              ///< system, component); or the first from there, over a minute older than the newest
   };
 
-  explicit SignatureChecker(const SigningKey& key) : key_(key) {}
+  /// Of a receiver whose own clock is at `timestamp`.
+  explicit SignatureChecker(const SigningKey& key, std::uint64_t timestamp = 0)
+      : key_(key), newest_(timestamp) {}
 
   /// Of a whole frame of `system` and `component`, which ends with its signature. Only a right one
   /// changes what is accepted later. @pre frame.size() > kSignatureBytes
   Verdict check(std::span<const std::uint8_t> frame, std::uint8_t system, std::uint8_t component);
+  /// The newest timestamp that was right.
+  std::uint64_t newest() const { return newest_; }
 
  private:
   SigningKey key_;
-  std::uint64_t newest_ = 0;                                     // of all streams
+  std::uint64_t newest_;                                         // of all streams
   std::map<std::array<std::uint8_t, 3>, std::uint64_t> last_{};  // by link, system, component
+};
+
+/// Signs for a program that does not, and checks what it is to receive: frames of any message, also
+/// of such that are not in the table. Not thread-safe.
+class SignedLink {
+ public:
+  /// `timestamp`: the time at which the link begins.
+  SignedLink(const SigningKey& key, std::uint8_t link, std::uint64_t timestamp)
+      : signer_(key, link, timestamp), checker_(key, timestamp) {}
+
+  /// The frames of MAVLink 2 of a datagram, signed at that time or later; the rest as it is.
+  std::vector<std::uint8_t> sign(std::span<const std::uint8_t> datagram, std::uint64_t timestamp);
+  struct Opened {
+    SignatureChecker::Verdict verdict = SignatureChecker::Verdict::kNotSigned;
+    std::vector<std::uint8_t> frames{};  ///< without signatures, and without what is between them
+  };
+  /// Of a datagram. It is right if all of its frames are, and it has one.
+  Opened open(std::span<const std::uint8_t> datagram);
+
+ private:
+  Signer signer_;
+  SignatureChecker checker_;
 };
 
 /// Who sends.

@@ -107,6 +107,8 @@ UavSetup read_uav(const toml::Table& table, const std::optional<Sut>& default_su
     scenario.files.push_back(uav.energy->file);
   }
   uav.flight_controller = read_flight_controller(table);
+  if (uav.flight_controller && !uav.flight_controller->signing_key_file.empty())
+    scenario.files.push_back(uav.flight_controller->signing_key_file);
   uav.seat = read_seat(table, scenario);
   uav.sut = read_sut(table, default_sut, scenario);
   if (uav.sut.mission)

@@ -11,6 +11,8 @@
 #include <tether/autopilot/built_in.h>
 #include <tether/autopilot/external.h>
 #include <tether/autopilot/ground_station.h>
+#include <tether/autopilot/signing.h>
+#include <tether/os/text_file.h>
 
 namespace tether::scenario {
 namespace {
@@ -69,6 +71,21 @@ std::map<std::string, double> read_parameters(const toml::Table& table,
   return values;
 }
 
+std::filesystem::path file_beside(const toml::Table& table, const char* key) {
+  return (std::filesystem::path(table.where(key).file).parent_path() / table.text(key))
+      .lexically_normal();
+}
+
+void read_signing_key(const toml::Table& table, FlightController& controller) {
+  constexpr const char* kKey = "signing_key_file";
+  if (!table.has(kKey)) return;
+  controller.signing_key_file = file_beside(table, kKey);
+  constexpr std::uintmax_t kMostBytes = 1000;
+  controller.signing_key = os::read_file(controller.signing_key_file, kMostBytes);
+  const std::string wrong = autopilot::complaint_about_signing_key(controller.signing_key);
+  if (!wrong.empty()) table.fail(kKey, fmt::format("cannot be used: {}.", wrong));
+}
+
 FlightController read_settings(const toml::Table& table, FlightController controller) {
   constexpr toml::Range kBaud{.min = 0.0, .max = 1e9};
   constexpr toml::Range kLatency_ms{.min = 0.0, .max = 10'000.0};
@@ -86,13 +103,12 @@ FlightController read_settings(const toml::Table& table, FlightController contro
         static_cast<autopilot::GroundStation>(table.choice("ground_station", kGroundStations));
   controller.ground_station_port = static_cast<std::uint16_t>(table.integer_or(
       "ground_station_port", kLeastPort, kLargestPort, autopilot::kGroundStationPort));
+  read_signing_key(table, controller);
   if (controller.external == nullptr) return controller;
   controller.has_fixed_ports = controller.external->has_fixed_ports;
   controller.boot = duration_from_seconds(
       table.number_or("boot_s", kBoot_s, to_seconds(controller.external->boot)));
-  controller.path =
-      (std::filesystem::path(table.where("path").file).parent_path() / table.text("path"))
-          .lexically_normal();
+  controller.path = file_beside(table, "path");
   return controller;
 }
 
@@ -117,9 +133,9 @@ std::optional<FlightController> read_flight_controller(const toml::Table& uav) {
                                  "and the 'path' of {}'s build.",
                                  external->key, external->name));
   } else {
-    const toml::Table table =
-        uav.table(kKey, {"kind", "path", "boot_s", "link_baud", "link_latency_ms", "starts_in_air",
-                         "parameters", "ground_station", "ground_station_port"});
+    const toml::Table table = uav.table(
+        kKey, {"kind", "path", "boot_s", "link_baud", "link_latency_ms", "starts_in_air",
+               "parameters", "ground_station", "ground_station_port", "signing_key_file"});
     if (!take_kind(table.choice("kind", all))) return std::nullopt;
     controller = read_settings(table, std::move(controller));
   }

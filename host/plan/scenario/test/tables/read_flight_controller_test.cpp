@@ -80,6 +80,23 @@ TEST(ReadFlightController, MayHaveAGroundStation) {
             autopilot::GroundStation::kCommands);
 }
 
+TEST(ReadFlightController, MaySignItsLink) {
+  const ScratchFolder folder;
+  const std::string digits(64, '7');
+  folder.write("key", digits + "\n");
+  folder.write("short", "77\n");
+  const auto read = [&](const std::string& file) {
+    return read_one("flight_controller = { kind = \"built-in\", signing_key_file = \"" +
+                    (folder.path() / file).string() + "\" }");
+  };
+  EXPECT_EQ(read("key")->signing_key_file, folder.path() / "key");
+  EXPECT_EQ(read("key")->signing_key, digits + "\n");
+  EXPECT_THAT(bad_file_error([&] { read("short"); }).what(),
+              HasSubstr("s.toml:2: 'signing_key_file' of [uav.flight_controller] cannot be used: a "
+                        "MAVLink signing key has 32 bytes or 64 hexadecimal digits"));
+  EXPECT_THAT(bad_file_error([&] { read("none"); }).what(), HasSubstr("none"));
+}
+
 TEST(ReadFlightController, RefusesBadValuesWhereTheyAre) {
   struct Case {
     const char* text;

@@ -184,6 +184,7 @@ void members(auto& io, Maybe<RadioMessage> auto& m) {
 void members(auto& io, Maybe<AutopilotMessage> auto& m) {
   io("uav", m.uav);
   io.flag("to_controller", m.to_controller);
+  io.flag("of_station", m.of_station);
   io("sequence", m.sequence);
   if (io.has("part", m.part > 0)) io("part", m.part);
   io("bytes", m.bytes);

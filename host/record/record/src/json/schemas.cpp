@@ -270,13 +270,15 @@ const Schema kAutopilotMessageSchema{"tether.AutopilotMessage", R"json({
   "properties": {
     "uav": {"type": "string"},
     "to_controller": {"type": "boolean"},
+    "of_station": {"type": "boolean", "description": "from a ground station to the controller"},
     "sequence": {"type": "integer", "minimum": 1},
     "part": {"type": "integer", "minimum": 0, "description": "of several that were sent as one"},
     "bytes": {"type": "integer", "minimum": 0, "description": "of all that was sent as one"},
     "sent_at_ns": {"type": "integer", "description": "ET of the SUT, or ST of the controller"},
     "at_ns": {"type": "integer", "description": "when it arrived, or was lost"},
     "acted_at_ns": {"type": "integer", "description": "step of the controller that took it"},
-    "outcome": {"type": "string", "enum": ["delivered", "queue_full", "inbox_full", "waiting"]},
+    "outcome": {"type": "string", "enum": ["delivered", "queue_full", "inbox_full", "waiting", "not_signed",
+                                           "wrong_signature", "old_signature"]},
     "name": {"type": "string", "description": "of the MAVLink message; empty: not known"},
     "fields": {"type": "object", "description": "in the units of the MAVLink message"}
   },

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -32,6 +33,14 @@ struct Sensed {
 struct Actions {
   std::optional<uav::Setpoint> setpoint{};  ///< followed from now on; none: as before
   std::vector<Bytes> sent;                  ///< to the companion, in this order
+  /// What a ground station had sent, and the controller took.
+  std::vector<Bytes> of_station{};
+  /// Of what it received: messages that were not taken, and why ("not_signed").
+  struct Refusal {
+    std::size_t received = 0;
+    std::string_view why;
+  };
+  std::vector<Refusal> refused{};
 };
 
 /// Called in the order of time. The built-in one is deterministic: a function of what it was given.

@@ -95,6 +95,8 @@ struct FlightController {
   autopilot::GroundStation ground_station{};  ///< what one may do; first: there is none
   std::uint16_t ground_station_port = 0;
   FileLocation at{};
+  std::filesystem::path signing_key_file{};  ///< absolute; empty: the link is not signed
+  std::string signing_key{};                 ///< its content
 };
 
 /// What a UAV needs to fly, and what its battery has (data/energy/*.toml).

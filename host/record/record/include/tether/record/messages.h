@@ -252,7 +252,7 @@ struct RadioMessage {
 
 /// A message between a UAV's flight controller and its SUT: written when the controller has taken
 /// it, when it has arrived at the SUT, when it was lost, and at the end of the run if neither is
-/// known. Topic /autopilot/<uav>/<"to" or "from">/<name>; log time = ST then.
+/// known. Topic /autopilot/<uav>/<"to", "from" or "station">/<name>; log time = ST then.
 struct AutopilotMessage {
   std::string uav;
   bool to_controller = false;
@@ -263,11 +263,23 @@ struct AutopilotMessage {
   SimTime sent_at;          ///< ET of the call; a step of the controller + 1 ns
   SimTime at;               ///< when it arrived or was lost
   std::optional<SimTime> acted_at{};  ///< the step of the controller that has taken it
-  std::string outcome;                ///< "delivered", "queue_full", "inbox_full" or "waiting"
+  /// "delivered", "queue_full", "inbox_full" or "waiting"; of a signed link, also "not_signed",
+  /// "wrong_signature" and "old_signature": the controller refused it.
+  std::string outcome;
   std::string name;    ///< of the MAVLink message; empty: the bytes are no message that is known
   std::string fields;  ///< its values: a JSON object, which is written as it is; empty: none
 
-  std::string_view direction() const { return to_controller ? "to" : "from"; }
+  /// Of a ground station, not of the SUT; `to_controller` is false.
+  bool of_station = false;
+
+  std::string_view direction() const {
+    return of_station ? "station" : to_controller ? "to" : "from";
+  }
+  /// By the controller, whose link is signed.
+  bool is_refused() const {
+    return outcome == "not_signed" || outcome == "wrong_signature" || outcome == "old_signature";
+  }
+  bool of_controller() const { return !to_controller && !of_station; }
   /// Whether it is a command of what to fly now.
   bool is_setpoint() const {
     return to_controller &&
