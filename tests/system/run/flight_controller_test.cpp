@@ -46,7 +46,9 @@ TEST_F(FlightControllerTest, FliesACompanionsSquareAndTheRecordHasTheirMessages)
       << "a topic for each message, for Foxglove";
 }
 
-TEST_F(FlightControllerTest, TenCompanionsFlyEachItsSquare) {
+using SwarmWithFlightControllers = FlightControllerTest;
+
+TEST_F(SwarmWithFlightControllers, TenCompanionsFlyEachItsSquare) {
   uavs_ = 10;
   ASSERT_EQ(fly("0.01"), 0) << said_;
   EXPECT_TRUE(result_["audit"]["passed"]) << result_["audit"]["summary"];

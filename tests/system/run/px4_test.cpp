@@ -41,6 +41,17 @@ TEST_F(Px4Flight, ACompanionFliesASquareWithAGimbalAndTwoFlightsAreTheSame) {
   EXPECT_EQ(result_["flight_digest"], digest);
 }
 
+using Px4Swarm = Px4Flight;
+
+TEST_F(Px4Swarm, TenInstancesFlyEachTheSquareOfItsCompanion) {
+  uavs_ = 10;
+  ASSERT_EQ(fly("path = \"build\", boot_s = 5"), 0) << said_;
+  EXPECT_TRUE(result_["audit"]["passed"]) << result_["audit"]["summary"];
+  ASSERT_EQ(result_["suts"].size(), 10U);
+  for (const auto& sut : result_["suts"])
+    for (const auto& error_m : sut["details"]["errors_m"]) EXPECT_LT(error_m.get<double>(), 0.2);
+}
+
 TEST_F(Px4Flight, WithoutAControllerThereIsOneLineAndWhatToDo) {
   EXPECT_EQ(fly("path = \"nowhere\""), 3);
   EXPECT_THAT(said_, HasSubstr("has no bin/px4. 'path' must be the folder of PX4's build"));
