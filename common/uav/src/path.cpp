@@ -27,19 +27,31 @@ Four value_of(const Waypoint& waypoint) {
   return {waypoint.p_m, waypoint.yaw_rad};
 }
 
-/// The slope at a waypoint: that of the chord from its predecessor to its successor. Where there is
-/// none of them, it rests.
+/// The slope of a spline between two chords with these slopes, where the one across both has
+/// `across`: limited, so that the spline is monotone along each chord (Fritsch and Carlson 1980).
+double limited(double before, double after, double across) {
+  if (before * after <= 0.0) return 0.0;
+  const double most = 3.0 * std::min(std::abs(before), std::abs(after));
+  return std::clamp(across, -most, most);
+}
+
+/// The slope at a waypoint: that of the chord from its predecessor to its successor, limited. Where
+/// there is none of them, it rests.
 Four slope_at(const Path& path, std::size_t i) {
   const std::vector<Waypoint>& all = path.waypoints;
   const std::size_t last = all.size() - 1;
   const bool is_end = i == 0 || i == last;
   if (is_end && !path.repeats) return {};
-  const std::size_t before = i == 0 ? last : i, after = i == last ? 0 : i;
-  const Four change = (value_of(all[before]) - value_of(all[before - 1])) +
-                      (value_of(all[after + 1]) - value_of(all[after]));
-  const Duration taken =
-      (all[before].at - all[before - 1].at) + (all[after + 1].at - all[after].at);
-  return (1.0 / to_seconds(taken)) * change;
+  const std::size_t end = i == 0 ? last : i, begin = i == last ? 0 : i;
+  const Four come = value_of(all[end]) - value_of(all[end - 1]);
+  const Four go = value_of(all[begin + 1]) - value_of(all[begin]);
+  const double come_s = to_seconds(all[end].at - all[end - 1].at);
+  const double go_s = to_seconds(all[begin + 1].at - all[begin].at);
+  const auto slope = [&](double a, double b) {
+    return limited(a / come_s, b / go_s, (a + b) / (come_s + go_s));
+  };
+  return {{slope(come.p.x, go.p.x), slope(come.p.y, go.p.y), slope(come.p.z, go.p.z)},
+          slope(come.yaw, go.yaw)};
 }
 
 PathState at_rest(const Waypoint& waypoint) {

@@ -62,6 +62,47 @@ TEST(Path, VelocitiesDoNotJumpAtWaypoints) {
   }
 }
 
+TEST(Path, RestsBetweenEqualWaypoints) {
+  const Path path{{{seconds(0), {0, 0, 0}, 0.0},
+                   {seconds(4), {4, 1, 0}, 0.5},
+                   {seconds(6), {4, 1, 0}, 0.5},
+                   {seconds(9), {8, -2, 1}, 1.5}},
+                  false};
+  for (Duration t = seconds(4); t <= seconds(6); t += milliseconds(50)) {
+    const PathState state = state_at(path, t);
+    EXPECT_EQ(state.p_m, (Vec3{4, 1, 0}));
+    EXPECT_EQ(state.v_m_s, Vec3{});
+    EXPECT_EQ(state.yaw_rate_rad_s, 0.0);
+  }
+}
+
+// Also where a slow leg is followed by a fast one, whose slope would first swing back.
+TEST(Path, StaysBetweenTwoNeighboursAlongEachAxis) {
+  Path path{{{seconds(0), {0, 0, 0}, 0.0},
+             {seconds(10), {1, 3, 0}, 0.1},
+             {seconds(11), {9, -3, 2}, 2.0},
+             {seconds(19), {10, -4, 2}, 0.0},
+             {seconds(20), {0, 0, 0}, 0.0}},
+            true};
+  for (const bool repeats : {true, false}) {
+    path.repeats = repeats;
+    for (std::size_t i = 1; i < path.waypoints.size(); ++i) {
+      const Waypoint &from = path.waypoints[i - 1], &to = path.waypoints[i];
+      for (Duration t = from.at; t < to.at; t += milliseconds(10)) {
+        const PathState state = state_at(path, t);
+        const auto expect_between = [&](double a, double b, double value) {
+          EXPECT_GE(value, std::min(a, b) - 1e-12) << i;
+          EXPECT_LE(value, std::max(a, b) + 1e-12) << i;
+        };
+        expect_between(from.p_m.x, to.p_m.x, state.p_m.x);
+        expect_between(from.p_m.y, to.p_m.y, state.p_m.y);
+        expect_between(from.p_m.z, to.p_m.z, state.p_m.z);
+        expect_between(from.yaw_rad, to.yaw_rad, state.yaw_rad);
+      }
+    }
+  }
+}
+
 TEST(Path, RestsBeforeItsFirstAndAfterItsLastWaypoint) {
   const Path path{{{seconds(1), {1, 2, 3}, 0.1}, {seconds(2), {4, 5, 6}, 0.2}}, false};
   for (const auto& [at, waypoint] : {std::pair{milliseconds(0), path.waypoints[0]},

@@ -18,9 +18,10 @@ struct Waypoint {
   friend bool operator==(const Waypoint&, const Waypoint&) = default;
 };
 
-/// Goes through its waypoints at their times, by cubic Hermite splines with the slopes of Catmull
-/// and Rom (three-point differences): velocities do not jump. It rests before the first waypoint
-/// and after the last one, or repeats.
+/// Goes through its waypoints at their times, by monotone cubic splines (three-point differences,
+/// limited as by Fritsch and Carlson): velocities do not jump, and along each axis it stays between
+/// two neighbours, so that it rests between equal ones. It rests before the first waypoint and
+/// after the last one, or repeats.
 struct Path {
   std::vector<Waypoint> waypoints;  ///< in the order of their times, which differ
   bool repeats = false;             ///< then it begins at 0, and ends where it begins
