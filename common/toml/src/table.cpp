@@ -337,7 +337,11 @@ std::vector<std::int64_t> Table::integers(std::string_view key, std::int64_t min
 
 std::vector<std::string> Table::scalars_as_texts(std::string_view key) const {
   std::vector<std::string> texts;
-  for (const Node* element : elements(key, "an array")) texts.push_back(scalar_of(key, *element));
+  for (const Node* element : elements(key, "an array")) {
+    if (raw(*element).is_array())
+      fail_type(key, *element, "an array of strings, numbers or booleans, not of arrays");
+    texts.push_back(scalar_of(key, *element));
+  }
   if (texts.empty()) fail(key, "must have at least one value, but is empty");
   return texts;
 }

@@ -166,6 +166,8 @@ TEST(Table, ReadsScalarsOfAnArrayAsOnACommandLine) {
   EXPECT_THAT(file.root().scalars_as_texts("a"), ElementsAre("1", "2.5", "true", "x"));
   for (const char* key : {"b", "c"})
     EXPECT_EQ(bad_file_error([&] { (void)file.root().scalars_as_texts(key); }).subject(), key);
+  EXPECT_THAT(bad_file_error([&] { (void)file.root().scalars_as_texts("c"); }).what(),
+              testing::HasSubstr("numbers or booleans, not of arrays, but is an array"));
 }
 
 TEST(ResultOf, IsAValueOrTheFailureOfWhatWasThrown) {

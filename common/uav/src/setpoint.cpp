@@ -54,6 +54,24 @@ std::string number(double value) {
   return text;
 }
 
+std::string complaint_about_mask(const Setpoint& setpoint) {
+  std::string given;
+  int known = 0;
+  each_field(setpoint, [&](SetpointField field, const auto&, double, const char* name) {
+    known |= field;
+    if (setpoint.has(field)) given.append(given.empty() ? "" : " + ").append(name);
+  });
+  const bool has_unknown = (setpoint.mask & ~known) != 0;
+  if (has_unknown) given.append(given.empty() ? "" : " + ").append("unknown fields");
+  const bool turns_twice = (setpoint.mask & kAnyYaw) == kAnyYaw;
+  return "the mask " + std::to_string(setpoint.mask) +
+         " is no set-point: " + (given.empty() ? "nothing" : given) +
+         (turns_twice ? ". Give a yaw or a yaw rate, not both"
+                      : ". Give a position, a velocity or an acceleration, each perhaps with a yaw "
+                        "or a yaw rate, an attitude with a thrust, body rates with a thrust, rotor "
+                        "speeds, or joints");
+}
+
 }  // namespace
 
 Setpoint to_setpoint(const VelocityCommand& command) {
@@ -116,10 +134,7 @@ Setpoint setpoint_on_loss(LossAction action, const Setpoint& last, const Vec3& p
 
 std::string complaint_about(const Setpoint& setpoint) {
   const auto level = level_of(setpoint.mask);
-  if (!level && setpoint.mask != kJoints)
-    return "the mask " + std::to_string(setpoint.mask) +
-           " makes no sense. Give a position, a velocity, an acceleration, an attitude with a "
-           "thrust, body rates with a thrust, rotor speeds, or joints";
+  if (!level && setpoint.mask != kJoints) return complaint_about_mask(setpoint);
   std::string wrong;
   each_field(setpoint, [&](SetpointField field, const auto& value, double most, const char* name) {
     if (wrong.empty() && setpoint.has(field) && !(largest(value) <= most))

@@ -35,7 +35,10 @@ TEST(Setpoint, OnlyTheDocumentedMasksHaveALevel) {
 TEST(Setpoint, RefusesWhatNoUavCanFlyAndNamesIt) {
   using testing::HasSubstr;
   const std::vector<std::pair<Setpoint, std::string>> bad = {
-      {{.mask = 3 << 14}, "the mask 49152 makes no sense"},
+      {{.mask = 3 << 14}, "the mask 49152 is no set-point: unknown fields"},
+      {{.mask = kYaw}, "the mask 8 is no set-point: yaw. Give a position"},
+      {{.mask = kVelocity | kYaw | kYawRate},
+       "velocity + yaw + yaw rate. Give a yaw or a yaw rate, not"},
       {{.mask = kPosition}, "world frame"},
       {{.mask = kPosition, .in_heading = false, .p_WB_m = {0, 0, 1.1e5}}, "position"},
       {{.velocity_m_s = {kNan, 0, 0}}, "velocity"},

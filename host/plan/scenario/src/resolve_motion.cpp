@@ -34,18 +34,29 @@ void drive(const MovingModel& moving, sim::World& world) {
   }
 }
 
-void load(const CarriedPayload& carried, sim::World& world) {
+sim::Uav& carrier_of(const CarriedPayload& carried, sim::World& world) {
   std::vector<std::string_view> names;
   for (sim::Uav& uav : world.uavs) {
     names.push_back(uav.name);
     const bool is_only = carried.uav.empty() && world.uavs.size() == 1;
-    if (uav.name == carried.uav || is_only) return uav.payloads.push_back(carried.payload);
+    if (uav.name == carried.uav || is_only) return uav;
   }
   fail(carried.at, "[[payload]]",
        carried.uav.empty() ? "does not name its UAV. Add 'uav', because there are several."
                            : fmt::format("names the UAV '{}', which the scenario does not have; {}",
                                          carried.uav, allowed_hint(carried.uav, names)),
        carried.uav);
+}
+
+/// With what it carries already when it picks this up.
+void require_lift(const CarriedPayload& carried, sim::World& world) {
+  const sim::Uav& uav = carrier_of(carried, world);
+  double mass_kg = uav.airframe.mass_kg;
+  for (const sim::Payload& payload : uav.payloads)
+    if (payload.from <= carried.payload.from && carried.payload.from < payload.until)
+      mass_kg += payload.mass_kg;
+  if (const std::string why = why_no_lift(uav, mass_kg, world); !why.empty())
+    fail(carried.at, "[[payload]]", why, "payload");
 }
 
 }  // namespace
@@ -67,7 +78,7 @@ void resolve_motion(const Scenario& scenario, bool is_read_elsewhere, sim::World
   }
   for (const CarriedPayload& carried : scenario.payloads) {
     if (is_read_elsewhere) refuse(carried.at, "[[payload]]");
-    load(carried, world);
+    carrier_of(carried, world).payloads.push_back(carried.payload);
   }
 }
 
@@ -76,6 +87,7 @@ Resolved resolve_world(const Scenario& scenario, const Condition& condition, std
   Resolved resolved;
   resolve_motion(scenario, is_read_elsewhere, world);
   resolved.varied = vary(scenario.variations, seed, is_read_elsewhere, world);
+  for (const CarriedPayload& carried : scenario.payloads) require_lift(carried, world);
   resolve_step(scenario, world);
   resolve_energy(scenario, condition, world, warn);
   resolved.timings = resolve_sensors(scenario, condition, world, warn);

@@ -1,21 +1,14 @@
-// Quantities are rows of a table: which part of the world they belong to, and how a value changes
-// it. Positions and angles are added to those of the files; factors multiply. A UAV's controller
-// knows its mass and its rotors, as that of a real one is tuned to them.
-
 #include "model_parts.h"
+#include "quantity.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <functional>
-#include <optional>
 #include <set>
 
 #include <fmt/format.h>
 
 #include <tether/base/random.h>
 #include <tether/base/suggest.h>
-#include <tether/base/units.h>
 #include <tether/scenario/scenario.h>
 #include <tether/sim/bodies.h>
 #include <tether/sim/clearance.h>
@@ -23,188 +16,12 @@
 namespace tether::scenario {
 namespace {
 
-/// kWind: of a world with wind. kPath: of a model with a path.
-enum class Part { kUav, kModel, kPath, kWorld, kWind, kSensor };
 bool is_of_world(Part part) {
   return part == Part::kWorld || part == Part::kWind;
 }
 
-struct Quantity {
-  std::string_view name;
-  Part part;
-  bool is_factor;  ///< must be above 0
-  void (*change)(sim::World& world, sim::Uav* uav, sim::Model* model, sim::Sensor* sensor,
-                 double value);
-};
-
-using Change = decltype(Quantity::change);
-
-template <auto Member>
-constexpr Change kMoveUav = [](sim::World&, sim::Uav* uav, sim::Model*, sim::Sensor*,
-                               double value) { uav->X_WB.p.*Member += value; };
-template <auto Member>
-constexpr Change kMoveModel = [](sim::World&, sim::Uav*, sim::Model* model, sim::Sensor*,
-                                 double value) { model->X_WM.p.*Member += value; };
-template <auto Member>
-constexpr Change kMoveSensor = [](sim::World&, sim::Uav*, sim::Model*, sim::Sensor* sensor,
-                                  double value) { sensor->X_BS.p.*Member += value; };
-
-uav::Quat turn(double roll_deg, double pitch_deg, double yaw_deg) {
-  return uav::from_rpy(rad_from_deg(roll_deg), rad_from_deg(pitch_deg), rad_from_deg(yaw_deg));
-}
-
-void scale_mass(sim::Uav& uav, double mass_kg) {
-  const double factor = mass_kg / uav.airframe.mass_kg;
-  uav.airframe.mass_kg = mass_kg;
-  uav.airframe.inertia_kg_m2 = factor * uav.airframe.inertia_kg_m2;
-  uav.body.mass_kg *= factor;
-  uav.body.inertia_kg_m2 = factor * uav.body.inertia_kg_m2;
-}
-
-void for_each_collision(sim::World& world, const std::function<void(sim::Collision&)>& change) {
-  for (sim::Model& model : world.models)
-    for (sim::Link& link : model.links)
-      for (sim::Collision& collision : link.collisions) change(collision);
-}
-
-using uav::Vec3;
-
-void for_each_colour(sim::Model& model, const std::function<void(Vec3&)>& change) {
-  for (sim::Link& link : model.links)
-    for (sim::Visual& visual : link.visuals) {
-      change(visual.material.diffuse_rgb);
-      change(visual.material.ambient_rgb);
-    }
-}
-
-void for_each_light(sim::World& world, const std::function<void(Vec3&)>& change) {
-  change(world.ambient_rgb);
-  for (sim::Light& light : world.lights) {
-    change(light.diffuse_rgb);
-    change(light.specular_rgb);
-  }
-}
-
-Vec3 grey_of(const Vec3& rgb) {
-  const double mean = (rgb.x + rgb.y + rgb.z) / 3.0;
-  return {mean, mean, mean};
-}
-
-Vec3 within_colours(const Vec3& rgb) {
-  return {std::clamp(rgb.x, 0.0, 1.0), std::clamp(rgb.y, 0.0, 1.0), std::clamp(rgb.z, 0.0, 1.0)};
-}
-
-/// About the axis of the greys: from red over green to blue.
-Vec3 turned_hue(const Vec3& rgb, double hue_deg) {
-  const double third = std::sqrt(1.0 / 3.0);
-  return within_colours(
-      rotate(uav::from_axis_angle({third, third, third}, rad_from_deg(hue_deg)), rgb));
-}
-
-constexpr std::array kQuantities = {
-    Quantity{"start_x_m", Part::kUav, false, kMoveUav<&Vec3::x>},
-    Quantity{"start_y_m", Part::kUav, false, kMoveUav<&Vec3::y>},
-    Quantity{"start_z_m", Part::kUav, false, kMoveUav<&Vec3::z>},
-    Quantity{"start_yaw_deg", Part::kUav, false,
-             [](sim::World&, sim::Uav* uav, sim::Model*, sim::Sensor*, double yaw_deg) {
-               uav->X_WB.q = turn(0.0, 0.0, yaw_deg) * uav->X_WB.q;
-             }},
-    Quantity{"mass_factor", Part::kUav, true,
-             [](sim::World&, sim::Uav* uav, sim::Model*, sim::Sensor*, double factor) {
-               scale_mass(*uav, factor * uav->airframe.mass_kg);
-             }},
-    Quantity{"payload_kg", Part::kUav, false,
-             [](sim::World&, sim::Uav* uav, sim::Model*, sim::Sensor*, double payload_kg) {
-               scale_mass(*uav, uav->airframe.mass_kg + payload_kg);
-             }},
-    Quantity{"thrust_factor", Part::kUav, true,
-             [](sim::World&, sim::Uav* uav, sim::Model*, sim::Sensor*, double factor) {
-               uav->airframe.thrust_coefficient *= factor;
-             }},
-    Quantity{"drag_factor", Part::kUav, true,
-             [](sim::World&, sim::Uav* uav, sim::Model*, sim::Sensor*, double factor) {
-               uav->airframe.drag_coefficient *= factor;
-               uav->airframe.linear_drag_N_s_m *= factor;
-             }},
-    Quantity{"motor_lag_factor", Part::kUav, true,
-             [](sim::World&, sim::Uav* uav, sim::Model*, sim::Sensor*, double factor) {
-               uav->airframe.time_constant_up_s *= factor;
-               uav->airframe.time_constant_down_s *= factor;
-             }},
-    Quantity{"model_x_m", Part::kModel, false, kMoveModel<&Vec3::x>},
-    Quantity{"model_y_m", Part::kModel, false, kMoveModel<&Vec3::y>},
-    Quantity{"model_z_m", Part::kModel, false, kMoveModel<&Vec3::z>},
-    Quantity{"model_yaw_deg", Part::kModel, false,
-             [](sim::World&, sim::Uav*, sim::Model* model, sim::Sensor*, double yaw_deg) {
-               model->X_WM.q = turn(0.0, 0.0, yaw_deg) * model->X_WM.q;
-             }},
-    Quantity{"model_brightness_factor", Part::kModel, true,
-             [](sim::World&, sim::Uav*, sim::Model* model, sim::Sensor*, double factor) {
-               for_each_colour(*model, [&](Vec3& rgb) { rgb = factor * rgb; });
-             }},
-    Quantity{"model_hue_deg", Part::kModel, false,
-             [](sim::World&, sim::Uav*, sim::Model* model, sim::Sensor*, double hue_deg) {
-               for_each_colour(*model, [&](Vec3& rgb) { rgb = turned_hue(rgb, hue_deg); });
-             }},
-    Quantity{"model_saturation_factor", Part::kModel, true,
-             [](sim::World&, sim::Uav*, sim::Model* model, sim::Sensor*, double factor) {
-               for_each_colour(*model, [&](Vec3& rgb) {
-                 rgb = within_colours(grey_of(rgb) + factor * (rgb - grey_of(rgb)));
-               });
-             }},
-    Quantity{"path_delay_s", Part::kPath, false,
-             [](sim::World&, sim::Uav*, sim::Model* model, sim::Sensor*, double delay_s) {
-               model->path->delay += duration_from_seconds(delay_s);
-             }},
-    Quantity{"path_time_factor", Part::kPath, true,
-             [](sim::World&, sim::Uav*, sim::Model* model, sim::Sensor*, double factor) {
-               for (uav::Waypoint& point : model->path->waypoints)
-                 point.at = duration_from_seconds(factor * to_seconds(point.at));
-             }},
-    Quantity{"wind_factor", Part::kWind, true,
-             [](sim::World& world, sim::Uav*, sim::Model*, sim::Sensor*, double factor) {
-               world.wind.v_WA_m_s = factor * world.wind.v_WA_m_s;
-             }},
-    Quantity{"wind_yaw_deg", Part::kWind, false,
-             [](sim::World& world, sim::Uav*, sim::Model*, sim::Sensor*, double yaw_deg) {
-               world.wind.v_WA_m_s = rotate(turn(0.0, 0.0, yaw_deg), world.wind.v_WA_m_s);
-             }},
-    Quantity{"turbulence_factor", Part::kWind, true,
-             [](sim::World& world, sim::Uav*, sim::Model*, sim::Sensor*, double factor) {
-               world.wind.turbulence *= factor;
-             }},
-    Quantity{"light_factor", Part::kWorld, true,
-             [](sim::World& world, sim::Uav*, sim::Model*, sim::Sensor*, double factor) {
-               for_each_light(world, [&](Vec3& rgb) { rgb = factor * rgb; });
-             }},
-    Quantity{"light_warmth_factor", Part::kWorld, true,
-             [](sim::World& world, sim::Uav*, sim::Model*, sim::Sensor*, double factor) {
-               const double red = std::sqrt(factor);
-               for_each_light(world, [&](Vec3& rgb) { rgb = {red * rgb.x, rgb.y, rgb.z / red}; });
-             }},
-    Quantity{"friction_factor", Part::kWorld, true,
-             [](sim::World& world, sim::Uav*, sim::Model*, sim::Sensor*, double factor) {
-               for_each_collision(world, [&](sim::Collision& c) { c.friction *= factor; });
-             }},
-    Quantity{"sensor_x_m", Part::kSensor, false, kMoveSensor<&Vec3::x>},
-    Quantity{"sensor_y_m", Part::kSensor, false, kMoveSensor<&Vec3::y>},
-    Quantity{"sensor_z_m", Part::kSensor, false, kMoveSensor<&Vec3::z>},
-    Quantity{"sensor_roll_deg", Part::kSensor, false,
-             [](sim::World&, sim::Uav*, sim::Model*, sim::Sensor* sensor, double roll_deg) {
-               sensor->X_BS.q = sensor->X_BS.q * turn(roll_deg, 0.0, 0.0);
-             }},
-    Quantity{"sensor_pitch_deg", Part::kSensor, false,
-             [](sim::World&, sim::Uav*, sim::Model*, sim::Sensor* sensor, double pitch_deg) {
-               sensor->X_BS.q = sensor->X_BS.q * turn(0.0, pitch_deg, 0.0);
-             }},
-    Quantity{"sensor_yaw_deg", Part::kSensor, false,
-             [](sim::World&, sim::Uav*, sim::Model*, sim::Sensor* sensor, double yaw_deg) {
-               sensor->X_BS.q = sensor->X_BS.q * turn(0.0, 0.0, yaw_deg);
-             }},
-};
-
 const Quantity& quantity_of(const Variation& variation) {
-  return *std::ranges::find(kQuantities, variation.quantity, &Quantity::name);
+  return *std::ranges::find(quantities(), variation.quantity, &Quantity::name);
 }
 
 [[noreturn]] void fail(const Variation& variation, const std::string& problem) {
@@ -237,8 +54,10 @@ double draw(const Distribution& distribution, KeyedRandom& random) {
 Varied value_of(const Variation& variation, std::uint64_t seed, std::uint64_t attempt) {
   KeyedRandom random({seed, random_stream(variation.name, "", "vary"), attempt});
   const double value = draw(variation.distribution, random);
-  if (quantity_of(variation).is_factor && value <= 0.0)
-    fail(variation, fmt::format("gives {:.6g}, but a factor is above 0", value));
+  const toml::Range& allowed = quantity_of(variation).allowed;
+  if (!allowed.contains(value))
+    fail(variation,
+         fmt::format("gives {:.6g}, but {} must be {}", value, variation.quantity, allowed.text()));
   return {variation.name, variation.text(), value};
 }
 
@@ -260,21 +79,92 @@ void place_anchor(const std::string& name, const uav::Pose& now, const uav::Pose
     if (placed.anchor.name == name) placed.X_WA = now * (uav::inverse(before) * placed.X_WA);
 }
 
-void change_uavs(const Variation& variation, double value, sim::World& world) {
-  const Quantity& quantity = quantity_of(variation);
-  const auto change = [&](sim::Uav& uav) {
-    const uav::Pose before = uav.X_WB;
-    quantity.change(world, &uav, nullptr, nullptr, value);
-    place_anchor(uav.name, uav.X_WB, before, world);
-    if (uav.airframe.mass_kg <= 0.0)
-      fail(variation,
-           fmt::format("gives the UAV '{}' a mass of {:.6g} kg", uav.name, uav.airframe.mass_kg));
-  };
-  if (!variation.of.empty()) return change(find(world.uavs, variation.of, variation, "the UAV"));
-  for (sim::Uav& uav : world.uavs) change(uav);
+/// The UAVs that it is about.
+std::vector<sim::Uav*> uavs_of(const Variation& variation, sim::World& world) {
+  if (!variation.of.empty()) return {&find(world.uavs, variation.of, variation, "the UAV")};
+  std::vector<sim::Uav*> uavs;
+  for (sim::Uav& uav : world.uavs) uavs.push_back(&uav);
+  return uavs;
 }
 
-// --- models --------------------------------------------------------------------------------------
+void change_uavs(const Variation& variation, double value, sim::World& world) {
+  for (sim::Uav* uav : uavs_of(variation, world)) {
+    quantity_of(variation).change(world, uav, nullptr, nullptr, value);
+    if (uav->airframe.mass_kg <= 0.0)
+      fail(variation,
+           fmt::format("gives the UAV '{}' a mass of {:.6g} kg", uav->name, uav->airframe.mass_kg));
+  }
+}
+
+/// When all of it is changed.
+void require_lift(const Variation& variation, sim::World& world) {
+  for (const sim::Uav* uav : uavs_of(variation, world))
+    if (const std::string why = why_no_lift(*uav, uav->airframe.mass_kg, world); !why.empty())
+      fail(variation, why);
+}
+
+// --- places --------------------------------------------------------------------------------------
+
+/// All that is varied of one place at once: its coordinates are not independent of each other.
+using Group = std::vector<const Variation*>;
+
+/// Draws again until the place is free: `try_values` says whether it is.
+void draw_place(const Group& group, const std::string& what, std::uint64_t seed,
+                std::vector<Varied>& values,
+                const std::function<bool(const std::vector<Varied>&)>& try_values) {
+  constexpr std::uint64_t kAttempts = 100;
+  for (std::uint64_t attempt = 0; attempt < kAttempts; ++attempt) {
+    std::vector<Varied> drawn;
+    for (const Variation* variation : group) drawn.push_back(value_of(*variation, seed, attempt));
+    if (!try_values(drawn)) continue;
+    values.insert(values.end(), drawn.begin(), drawn.end());
+    return;
+  }
+  fail(*group.front(), fmt::format("finds no place for {} with seed {}, in which it touches "
+                                   "nothing else. Give it more room",
+                                   what, seed));
+}
+
+/// What each UAV starts inside of, or below; empty: nothing. Meshes are not looked at.
+std::vector<std::string> obstacles_of_starts(sim::World world) {
+  const auto leave_out_meshes = [](sim::Link& link) {
+    std::erase_if(link.collisions, [](const sim::Collision& collision) {
+      return std::holds_alternative<sim::MeshGeometry>(collision.geometry);
+    });
+  };
+  for (sim::Uav& uav : world.uavs) leave_out_meshes(uav.body);
+  for (sim::Model& model : world.models) std::ranges::for_each(model.links, leave_out_meshes);
+  const sim::ClearanceMeter meter(world, {});
+  std::vector<std::string> obstacles;
+  for (std::size_t i = 0; i < world.uavs.size(); ++i)
+    obstacles.emplace_back(meter.obstacle_of_start(i));
+  return obstacles;
+}
+
+void place_uavs(const Group& group, std::uint64_t seed, sim::World& world,
+                std::vector<Varied>& values) {
+  const std::vector<sim::Uav*> uavs = uavs_of(*group.front(), world);
+  std::vector<uav::Pose> before;
+  for (const sim::Uav* uav : uavs) before.push_back(uav->X_WB);
+  const std::vector<std::string> in_the_file = obstacles_of_starts(world);
+  const auto is_free = [&](const std::vector<std::string>& obstacles) {
+    return std::ranges::equal(obstacles, in_the_file, [](const auto& now, const auto& known) {
+      return now.empty() || now == known;
+    });
+  };
+  const std::string what =
+      uavs.size() == 1 ? fmt::format("the UAV '{}'", uavs[0]->name) : "the UAVs";
+  draw_place(group, what, seed, values, [&](const std::vector<Varied>& drawn) {
+    for (std::size_t i = 0; i < uavs.size(); ++i) {
+      uavs[i]->X_WB = before[i];
+      for (std::size_t k = 0; k < group.size(); ++k)
+        quantity_of(*group[k]).change(world, uavs[i], nullptr, nullptr, drawn[k].value);
+    }
+    return is_free(obstacles_of_starts(world));
+  });
+  for (std::size_t i = 0; i < uavs.size(); ++i)
+    place_anchor(uavs[i]->name, uavs[i]->X_WB, before[i], world);
+}
 
 /// The names of what touches a model, UAVs included: of each link by itself, as the meter measures
 /// distances from UAVs.
@@ -315,30 +205,36 @@ void move_nested(sim::Model& model, const uav::Pose& X_WM_before, sim::World& wo
   }
 }
 
-/// All that is varied of one model at once: its coordinates are not independent of each other.
-void place_model(const std::vector<const Variation*>& variations, std::uint64_t seed,
-                 sim::World& world, std::vector<Varied>& values) {
-  constexpr std::uint64_t kAttempts = 100;
-  const Variation& first = *variations.front();
+void place_model(const Group& group, std::uint64_t seed, sim::World& world,
+                 std::vector<Varied>& values) {
+  const Variation& first = *group.front();
   sim::Model& model = find(world.models, first.of, first, "the model");
   const sim::Model before = model;
   const std::set<std::string> allowed = touching(world, before);
-  for (std::uint64_t attempt = 0; attempt < kAttempts; ++attempt) {
+  const std::string what = fmt::format("the model '{}'", model.name);
+  draw_place(group, what, seed, values, [&](const std::vector<Varied>& drawn) {
     model = before;
-    std::vector<Varied> drawn;
-    for (const Variation* variation : variations) {
-      drawn.push_back(value_of(*variation, seed, attempt));
-      quantity_of(*variation).change(world, nullptr, &model, nullptr, drawn.back().value);
-    }
-    if (!std::ranges::includes(allowed, touching(world, model))) continue;
-    place_anchor(model.name, model.X_WM, before.X_WM, world);
-    move_nested(model, before.X_WM, world);
-    values.insert(values.end(), drawn.begin(), drawn.end());
-    return;
+    for (std::size_t k = 0; k < group.size(); ++k)
+      quantity_of(*group[k]).change(world, nullptr, &model, nullptr, drawn[k].value);
+    return std::ranges::includes(allowed, touching(world, model));
+  });
+  place_anchor(model.name, model.X_WM, before.X_WM, world);
+  move_nested(model, before.X_WM, world);
+}
+
+/// The variations of this part, by what they are of.
+std::vector<Group> groups(const std::vector<Variation>& variations, Part part) {
+  std::vector<Group> groups;
+  for (const Variation& variation : variations) {
+    if (quantity_of(variation).part != part) continue;
+    const auto known = std::ranges::find(groups, variation.of,
+                                         [](const Group& group) { return group.front()->of; });
+    if (known != groups.end())
+      known->push_back(&variation);
+    else
+      groups.push_back({&variation});
   }
-  fail(first, fmt::format("finds no place for the model '{}' with seed {}, in which it touches "
-                          "nothing else. Give it more room",
-                          model.name, seed));
+  return groups;
 }
 
 }  // namespace
@@ -347,42 +243,33 @@ std::string Variation::text() const {
   return of.empty() ? quantity : fmt::format("{} of {}", quantity, of);
 }
 
-std::vector<std::string_view> quantities() {
-  std::vector<std::string_view> names;
-  for (const Quantity& quantity : kQuantities) names.push_back(quantity.name);
-  return names;
-}
-
 // Models come last: they make room for the UAVs.
 std::vector<Varied> vary(const std::vector<Variation>& variations, std::uint64_t seed,
                          bool is_read_elsewhere, sim::World& world) {
   std::vector<Varied> values;
-  std::vector<std::pair<std::string, std::vector<const Variation*>>> of_models;
   for (const Variation& variation : variations) {
     const Part part = quantity_of(variation).part;
-    if (is_read_elsewhere && part != Part::kUav && part != Part::kSensor)
+    const bool is_seen = part == Part::kStart || part == Part::kUav || part == Part::kSensor;
+    if (is_read_elsewhere && !is_seen)
       fail(variation,
            fmt::format("varies {}, but this simulator reads the world's file itself. Use "
                        "the embedded simulator, or vary UAVs and sensors only",
                        variation.text()));
     if (part == Part::kWind && world.wind.is_calm())
       fail(variation, "varies the wind, but there is none. Give the scenario a table [wind]");
-    if (part == Part::kModel) {
-      const auto known =
-          std::ranges::find(of_models, variation.of, &decltype(of_models)::value_type::first);
-      if (known != of_models.end())
-        known->second.push_back(&variation);
-      else
-        of_models.push_back({variation.of, {&variation}});
-      continue;
-    }
+    if (part == Part::kStart || part == Part::kModel) continue;
     values.push_back(value_of(variation, seed, 0));
     if (part == Part::kUav) change_uavs(variation, values.back().value, world);
     if (part == Part::kPath) change_paths(variation, values.back().value, world);
     if (is_of_world(part))
       quantity_of(variation).change(world, nullptr, nullptr, nullptr, values.back().value);
   }
-  for (const auto& [model, of_model] : of_models) place_model(of_model, seed, world, values);
+  for (const Variation& variation : variations)
+    if (quantity_of(variation).part == Part::kUav) require_lift(variation, world);
+  for (const Group& group : groups(variations, Part::kStart))
+    place_uavs(group, seed, world, values);
+  for (const Group& group : groups(variations, Part::kModel))
+    place_model(group, seed, world, values);
   return values;
 }
 

@@ -111,6 +111,8 @@ TEST_F(Layered, EveryKeyOfAReceiverArrives) {
                            model.outage_every_s, model.outage_lasts_s}),
               ElementsAre(1.0, 2.0, 3.0, 4.0, 60.0, 5.0));
   expect_refusal(4, "navsat", [&] { lay(navsat, {layer("navsat", "outage_lasts_s = 61\n")}); });
+  sim::Sensor other{"navsat", {}, 10.0, sim::NavSatModel{}};
+  expect_refusal(4, "navsat", [&] { lay(other, {layer("navsat", "outage_every_s = 60\n")}); });
 }
 
 TEST_F(Layered, EveryKeyOfAMagnetometerAndABarometerArrives) {

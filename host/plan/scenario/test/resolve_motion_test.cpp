@@ -68,5 +68,34 @@ TEST(ResolveMotion, LoadsTheNamedUavOrTheOnlyOne) {
   EXPECT_EQ(world.uavs[0].payloads.size(), 1u);
 }
 
+// 4 rotors of 5 N each lift 2 kg.
+TEST(ResolveWorld, RefusesPayloadsThatTheRotorsCannotLift) {
+  sim::World world;
+  world.uavs.resize(1);
+  world.uavs[0].name = "alpha";
+  uav::MultirotorParameters& airframe = world.uavs[0].airframe;
+  airframe.mass_kg = 1.0;
+  airframe.rotors.resize(4);
+  airframe.thrust_coefficient = 5.0 / (100.0 * 100.0);
+  airframe.max_rotor_speed_rad_s = 100.0;
+  Scenario scenario;
+  scenario.uavs.resize(1);
+  scenario.uavs[0].placement.name = "alpha";
+  const auto resolve = [&](std::vector<sim::Payload> payloads) {
+    scenario.payloads.clear();
+    for (const sim::Payload& payload : payloads)
+      scenario.payloads.push_back({.uav = "alpha", .payload = payload, .at = {"s.toml", 7}});
+    sim::World flown = world;
+    resolve_world(scenario, {}, 1, false, flown, [](const Warning&) {});
+  };
+  const auto second = [](int s) { return SimTime(std::chrono::seconds(s)); };
+  EXPECT_NO_THROW(resolve({{0.6, second(0), second(2)}, {0.6, second(2), second(3)}}));
+  const Error error = bad_file_error([&] {
+    resolve({{0.6, second(0), second(2)}, {0.6, second(1), second(3)}});
+  });
+  EXPECT_THAT(error.what(), HasSubstr("too heavy to fly: it weighs 21.6 N (2.2 kg)"));
+  EXPECT_EQ(error.where().line, 7);
+}
+
 }  // namespace
 }  // namespace tether::scenario

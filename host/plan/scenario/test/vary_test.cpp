@@ -34,6 +34,8 @@ sim::World world() {
   uav.X_WB.p = {0.0, 0.0, 1.0};
   uav.airframe.mass_kg = 2.0;
   uav.airframe.thrust_coefficient = 4.0;
+  uav.airframe.rotors.resize(4);
+  uav.airframe.max_rotor_speed_rad_s = 2.0;  // 64 N
   uav.body.mass_kg = 2.0;
   uav.body.collisions.push_back({"box", {}, sim::BoxGeometry{{0.4, 0.4, 0.1}}, 1.0});
   uav.sensors.push_back({"imu", {}, 0.0, sim::ImuModel{}});
@@ -160,6 +162,31 @@ TEST(Vary, ModelsFindAPlaceWhereTheyTouchNothingNew) {
   EXPECT_EQ(error.where().line, 7);
 }
 
+// The UAV may stand on the crate, but not start in it, below the floor, or in another UAV.
+TEST(Vary, UavsStartWhereTheyAreInNothingNew) {
+  const std::vector<Variation> start = {of("start_x_m", "alpha", Uniform{-3.0, 3.0}),
+                                        of("start_z_m", "alpha", Uniform{-2.0, 0.5})};
+  sim::World two = world();
+  two.uavs.push_back(two.uavs[0]);
+  two.uavs[1].name = "beta";
+  two.uavs[1].X_WB.p = {-2.0, 0.0, 0.5};
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    sim::World flown = two;
+    vary(start, seed, false, flown);
+    const Vec3& p = flown.uavs[0].X_WB.p;
+    EXPECT_GT(p.z, 0.05 - 1e-9) << "the floor";
+    EXPECT_TRUE(std::abs(p.x - 2.0) > 0.7 || p.z > 1.05 - 1e-3) << "the crate";
+    EXPECT_TRUE(std::abs(p.x + 2.0) > 0.4 || std::abs(p.z - 0.5) > 0.1) << "beta";
+  }
+  sim::World full = world();
+  const Error error = bad_file_error([&] {
+    vary({of("start_x_m", "alpha", Uniform{1.9, 2.1}), of("start_z_m", "alpha", OneOf{{-0.5}})}, 1,
+         false, full);
+  });
+  EXPECT_THAT(error.what(), HasSubstr("finds no place for the UAV 'alpha'"));
+  EXPECT_EQ(error.where().line, 7);
+}
+
 TEST(Vary, LightAndFrictionAreThoseOfTheWholeWorld) {
   sim::World flown = world();
   vary({of("light_factor", "", OneOf{{0.5}}), of("friction_factor", "", OneOf{{2.0}})}, 1, false,
@@ -213,8 +240,10 @@ TEST(Vary, RefusesWhatItCannotChange) {
   EXPECT_THAT(problem(of("model_x_m", "crat", Uniform{})), HasSubstr("did you mean 'crate'"));
   EXPECT_THAT(problem(of("sensor_x_m", "imu", Uniform{})), HasSubstr("UAV.SENSOR"));
   EXPECT_THAT(problem(of("sensor_x_m", "alpha.eye", Uniform{})), HasSubstr("the sensor 'eye'"));
-  EXPECT_THAT(problem(of("mass_factor", "", OneOf{{0.0}})), HasSubstr("a factor is above 0"));
+  EXPECT_THAT(problem(of("mass_factor", "", OneOf{{0.0}})), HasSubstr("must be greater than 0"));
   EXPECT_THAT(problem(of("payload_kg", "", OneOf{{-2.0}})), HasSubstr("a mass of 0 kg"));
+  EXPECT_THAT(problem(of("payload_kg", "", OneOf{{5.0}})), HasSubstr("too heavy to fly"));
+  EXPECT_THAT(problem(of("thrust_factor", "", OneOf{{0.2}})), HasSubstr("12.8 N at most"));
   EXPECT_THAT(problem(of("light_factor", "", OneOf{{2.0}}), true), HasSubstr("reads the world"));
 }
 
@@ -245,6 +274,7 @@ TEST_F(VaryTables, ASettingHoldsOneQuantity) {
   const std::string tables = "[vary.start]\nquantity = \"start_x_m\"\nuniform = [-0.5, 0.5]\n";
   const auto held = load(tables, {{"vary.start.value", "0.25"}}).variations;
   EXPECT_EQ(std::get<OneOf>(held[0].distribution).values, std::vector{0.25});
+  EXPECT_EQ(load(tables, {{"vary.start.of", "uav1"}}).variations[0].of, "uav1");
   EXPECT_THROW(load(tables, {{"vary.other.value", "0.25"}}), Error);
 }
 
@@ -255,10 +285,14 @@ TEST_F(VaryTables, RefuseMistakesAtTheirLine) {
   };
   refused("[vary.a]\nquantity = \"start_w_m\"\nuniform = [0, 1]\n", 1, "quantity");
   refused("[vary.a]\nquantity = \"start_x_m\"\n", 0, "[vary.a]");
-  refused("[vary.a]\nquantity = \"start_x_m\"\nuniform = [0, 1]\nnormal = [0, 1]\n", 0, "[vary.a]");
+  refused("[vary.a]\nquantity = \"start_x_m\"\nuniform = [0, 1]\nnormal = [0, 1]\n", 3, "normal");
   refused("[vary.a]\nquantity = \"start_x_m\"\nuniform = [1, 0]\n", 2, "uniform");
   refused("[vary.a]\nquantity = \"start_x_m\"\nnormal = [1, -1]\n", 2, "normal");
   refused("[vary.a]\nquantity = \"model_x_m\"\nuniform = [0, 1]\n", 0, "of");
+  refused("[vary.a]\nquantity = \"path_delay_s\"\nof = \"m\"\nvalue = -100\n", 3, "value");
+  refused("[vary.a]\nquantity = \"mass_factor\"\nnormal = [-1, 1]\n", 2, "normal");
+  refused("[vary.a]\nquantity = \"sensor_pitch_deg\"\nof = \"a.b\"\none_of = [9, 1e3]\n", 3,
+          "one_of");
 }
 
 }  // namespace

@@ -201,6 +201,17 @@ std::string_view ClearanceMeter::shape_overhead(const Vec3& p_W) const {
   return overhead;
 }
 
+std::string_view ClearanceMeter::obstacle_of_start(std::size_t uav) const {
+  if (const auto floor = shape_overhead(starts_[uav].p); !floor.empty()) return floor;
+  const auto touched_at = [&](double height_m) {
+    std::vector<Pose> lifted = starts_;
+    lifted[uav].p.z += height_m;
+    const auto clearance = measure(uav, lifted);
+    return clearance && clearance->distance_m <= kTouching_m ? clearance->to : std::string_view{};
+  };
+  return touched_at(0.0).empty() ? std::string_view{} : touched_at(kLift_m);
+}
+
 void ClearanceMeter::warn_of_starts(const WarningSink& warn) const {
   if (!warn) return;
   for (std::size_t i = 0; i < world_.uavs.size(); ++i) {
@@ -208,24 +219,20 @@ void ClearanceMeter::warn_of_starts(const WarningSink& warn) const {
       warn({Consequence::kDoubtful, {}, "UAV '" + world_.uavs[i].name + "'", message});
     };
     const Vec3& p_WB = starts_[i].p;
-    const std::string_view floor = shape_overhead(p_WB);
-    std::vector<Pose> lifted = starts_;
-    lifted[i].p.z += kLift_m;
-    const auto is_touching = [](const std::optional<Clearance>& clearance) {
-      return clearance && clearance->distance_m <= kTouching_m;
-    };
-    const auto above = measure(i, lifted);
-    if (!floor.empty()) {
-      warn_that("starts below the floor '" + std::string(floor) + "'; set its position_m");
-    } else if (is_touching(measure(i, starts_)) && is_touching(above)) {
+    const std::string obstacle(obstacle_of_start(i));
+    if (!shape_overhead(p_WB).empty()) {
+      warn_that("starts below the floor '" + obstacle + "'; set its position_m");
+    } else if (!obstacle.empty()) {
       // As a model does whose legs reach further down than its start is high.
+      std::vector<Pose> lifted = starts_;
       const auto is_free = [&](double height_m) {
         lifted[i].p.z = p_WB.z + height_m;
-        return !is_touching(measure(i, lifted));
+        const auto clearance = measure(i, lifted);
+        return !clearance || clearance->distance_m > kTouching_m;
       };
       double lift_m = kLift_m;
       while (lift_m < kMostLift_m && !is_free(lift_m)) lift_m += kLift_m;
-      warn_that("starts inside '" + std::string(above->to) + "' or touching it; " +
+      warn_that("starts inside '" + obstacle + "' or touching it; " +
                 (lift_m < kMostLift_m
                      ? fmt::format("with position_m = [{:g}, {:g}, {:.2f}] it does not", p_WB.x,
                                    p_WB.y, p_WB.z + lift_m)

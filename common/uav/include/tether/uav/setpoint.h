@@ -114,7 +114,7 @@ Setpoint to_setpoint(const VelocityCommand& command);
 std::optional<VelocityCommand> heading_velocity(const Setpoint& setpoint);
 /// Without its joints.
 Setpoint flight_of(Setpoint setpoint);
-/// None: the mask makes no sense, or has joints only.
+/// None: the mask is no set-point, or has joints only.
 std::optional<SetpointLevel> level_of(std::uint16_t mask);
 /// The same set-point: fields that are not in the mask have their defaults.
 Setpoint without_ignored(const Setpoint& setpoint);

@@ -85,14 +85,15 @@ bool may_be_added(const KeyTable& table, const std::string& key) {
   return dots < 2 && !is_free && std::ranges::count(table.keys, first) > 0;
 }
 
-/// "vary.NAME.value", of a table that the file has.
-bool holds_a_variation(const Setting& setting, const toml::Table& root) {
-  constexpr std::string_view kFirst = "vary.", kLast = ".value";
+/// "vary.NAME.value" or "vary.NAME.of", of a table that the file has.
+bool is_of_a_variation(const Setting& setting, const toml::Table& root) {
+  constexpr std::string_view kFirst = "vary.";
   const std::string_view key = setting.key;
-  if (!key.starts_with(kFirst) || !key.ends_with(kLast) || !root.has("vary")) return false;
-  const std::string_view name =
-      key.substr(kFirst.size(), key.size() - std::min(key.size(), kFirst.size() + kLast.size()));
-  return root.table("vary").has(name);
+  if (!key.starts_with(kFirst) || !root.has("vary")) return false;
+  const std::size_t dot = key.rfind('.');
+  const std::string_view last = key.substr(dot + 1);
+  return (last == "value" || last == "of") && dot > kFirst.size() &&
+         root.table("vary").has(key.substr(kFirst.size(), dot - kFirst.size()));
 }
 
 }  // namespace
@@ -100,7 +101,7 @@ bool holds_a_variation(const Setting& setting, const toml::Table& root) {
 bool apply(const Setting& setting, toml::Document& scenario) {
   for (const KeyTable& table : kKeyTables)
     if (scenario.replace(table.from + setting.key, setting.value) > 0) return true;
-  if (holds_a_variation(setting, scenario.root()))
+  if (is_of_a_variation(setting, scenario.root()))
     return scenario.add(setting.key, setting.value) > 0;
   for (const KeyTable& table : kKeyTables)
     if (may_be_added(table, setting.key))
@@ -111,6 +112,10 @@ bool apply(const Setting& setting, toml::Document& scenario) {
 namespace {
 
 std::string suggestion(const std::string& key) {
+  for (const std::string_view list : {"moving", "payload"})
+    if (key.starts_with(list) && std::ranges::count(key, '.') > 1)
+      return fmt::format(". The tables [[{}]] have no names: '{}{}' is that key of each.", list,
+                         list, key.substr(key.rfind('.')));
   std::vector<std::string_view> keys;
   for (const KeyTable& table : kKeyTables)
     keys.insert(keys.end(), table.keys.begin(), table.keys.end());

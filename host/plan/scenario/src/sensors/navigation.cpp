@@ -23,6 +23,8 @@ std::vector<SensorKey> keys_of(std::type_identity<sim::NavSatModel>) {
 }
 
 void complete(sim::NavSatModel& navsat, const Finished& sensor) {
+  if (navsat.outage_every_s > 0.0 && !sensor.laid.has("outage_lasts_s"))
+    sensor.refuse({"outage_every_s"}, "has outage_every_s, but no outage_lasts_s: give both.");
   if (navsat.outage_lasts_s <= navsat.outage_every_s) return;
   sensor.refuse({"outage_lasts_s", "outage_every_s"},
                 fmt::format("has outage_lasts_s = {:.6g} and outage_every_s = {:.6g}. An outage "

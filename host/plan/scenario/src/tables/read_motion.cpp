@@ -31,7 +31,7 @@ uav::Wind read_wind(const toml::Table& table) {
   return wind;
 }
 
-CarriedPayload read_payload(const toml::Table& table) {
+CarriedPayload read_payload(const toml::Table& table, Duration time_limit) {
   constexpr toml::Range kMass_kg{.min = 0.0, .max = 100.0, .above_min = true};
   constexpr toml::Range kAt_s{.min = 0.0, .max = kLongestRun_s};
   CarriedPayload carried{.uav = table.text_or("uav", ""), .payload = {}, .at = table.where()};
@@ -40,6 +40,9 @@ CarriedPayload read_payload(const toml::Table& table) {
   if (table.has("until_s")) carried.payload.until = SimTime(table.duration("until_s", kAt_s));
   if (carried.payload.until <= carried.payload.from)
     table.fail("until_s", "must be later than 'from_s', which is 0 by default.");
+  if (carried.payload.from >= SimTime(time_limit))
+    table.fail("from_s", fmt::format("is {:.6g}, but the flight ends at 'time_limit_s' = {:.6g}.",
+                                     to_seconds(carried.payload.from), to_seconds(time_limit)));
   return carried;
 }
 
@@ -67,7 +70,7 @@ void read_motion(const toml::Table& root, Scenario& scenario) {
   }
   for (const toml::Table& table :
        root.tables_or_none("payload", {"uav", "mass_kg", "from_s", "until_s"}))
-    scenario.payloads.push_back(read_payload(table));
+    scenario.payloads.push_back(read_payload(table, scenario.time_limit));
   std::set<std::string> names;
   for (const toml::Table& table : root.tables_or_none("moving", {"model", "repeats", "waypoint"})) {
     scenario.moving.push_back(read_moving(table));

@@ -37,6 +37,15 @@ TEST_F(Settings, AddKeysThatTheFileLacks) {
   EXPECT_EQ(error.subject(), "cpu_factr");
 }
 
+TEST_F(Settings, OfTablesWithoutNamesSayHowToSetThem) {
+  try {
+    load({{"moving.platform.repeats", "true"}});
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("'moving.repeats' is that key of each"));
+  }
+}
+
 TEST_F(Settings, ReplaceArrays) {
   EXPECT_THAT(load({{"uav.position_m", "[1, -2, 3.5]"}}).name,
               testing::EndsWith("-position_m-1--2-3.5"));

@@ -15,6 +15,7 @@ using ::testing::HasSubstr;
 
 Scenario motion_of(const std::string& text) {
   Scenario scenario;
+  scenario.time_limit = std::chrono::seconds(10);
   read_motion(toml::Document::parse(text, "s.toml").root(), scenario);
   return scenario;
 }
@@ -64,6 +65,8 @@ TEST(ReadMotion, RefusesWhatCannotMove) {
               HasSubstr("no effect without a wind"));
   EXPECT_THAT(problem("[[payload]]\nmass_kg = 0"), HasSubstr("mass_kg"));
   EXPECT_THAT(problem("[[payload]]\nmass_kg = 1\nfrom_s = 2\nuntil_s = 2"), HasSubstr("until_s"));
+  EXPECT_THAT(problem("[[payload]]\nmass_kg = 1\nfrom_s = 10"),
+              HasSubstr("the flight ends at 'time_limit_s' = 10"));
   EXPECT_THAT(problem("[wind]\nvelocity_m_s = [100, 0, 0]"), HasSubstr("velocity_m_s"));
 }
 

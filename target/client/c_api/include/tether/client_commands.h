@@ -92,7 +92,7 @@ tether_status tether_get_joint(const tether_vehicle* vehicle, size_t index, teth
 /// @param count  how many  @param size  sizeof *setpoints
 /// @return TETHER_OK or an @ref interaction error; TETHER_INVALID, without an interaction, if a
 /// mask
-///   makes no sense, or if a value is not finite or beyond what the UAV can do
+///   is no set-point, or if a value is not finite or beyond what the UAV can do
 tether_status tether_follow(tether_vehicle* vehicle, const tether_setpoint* setpoints, size_t count,
                             size_t size) TETHER_NOEXCEPT;
 

@@ -66,16 +66,14 @@ struct Varied {
   friend bool operator==(const Varied&, const Varied&) = default;
 };
 
-/// The names of all quantities.
-std::vector<std::string_view> quantities();
-
 /// Draws the values of a flight and changes `world` by them, but for mountings of sensors, which
 /// profiles may replace: see `vary_mountings`. Models are placed again, up to 100 times, until they
-/// touch nothing that they do not touch in the file; meshes are not looked at. The same seed always
-/// gives the same world.
+/// touch nothing that they do not touch in the file, and UAVs until they start inside of nothing
+/// new, nor below the floor; meshes are not looked at. The same seed always gives the same world.
 /// `is_read_elsewhere`: an external simulator reads the world's file itself.
 /// @throws Error(kBadFile) at the table: `of` names nothing, a value is impossible (a mass that is
-///   not above 0), there is no room for a model, or the simulator would not see the change.
+///   not above 0, or that the rotors cannot lift), there is no room for a model or a UAV, or the
+///   simulator would not see the change.
 std::vector<Varied> vary(const std::vector<Variation>& variations, std::uint64_t seed,
                          bool is_read_elsewhere, sim::World& world);
 /// Turns and moves the sensors. @pre after `resolve_sensors`

@@ -43,6 +43,8 @@ class ClearanceMeter {
   /// or a mesh is not known. @pre one pose for each of `moving_bodies(world)`.
   std::optional<Clearance> measure(std::size_t uav, std::span<const uav::Pose> X_WB) const;
 
+  /// What a UAV starts inside of, touching or below; standing on it is fine. Empty: nothing.
+  std::string_view obstacle_of_start(std::size_t uav) const;
   /// Warns of each UAV that starts inside or touching something (standing on it is fine), below the
   /// floor, or far from every anchor.
   void warn_of_starts(const WarningSink& warn) const;
