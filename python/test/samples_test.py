@@ -4,6 +4,7 @@ import math
 import unittest
 
 from tether import _abi, samples, vehicle
+from tether.errors import InvalidError
 from tether.samples import Setpoint, Vec3
 
 
@@ -33,12 +34,29 @@ class Setpoints(unittest.TestCase):
         for wrong in (Setpoint(position_W_m=(1, 2)), Setpoint(q_WB=(1, 0, 0)), Setpoint(rotor_speeds_rad_s=range(9))):
             with self.assertRaises(ValueError):
                 _abi.to_c(wrong)
+        counts = {"rotor_speeds_rad_s": 4, "joints_rad": 0}
+        self.assertEqual(_abi.to_c(Setpoint(rotor_speeds_rad_s=(1, 2, 3, 4)), counts).rotors, 4)
+        for wrong, told in {Setpoint(rotor_speeds_rad_s=(1, 2, 3)): "has 3 numbers; the UAV has 4 rotors",
+                            Setpoint(joints_rad=(0,) * 5): "has 5 numbers; the UAV has at most 4 joints"}.items():
+            with self.assertRaisesRegex(ValueError, told):
+                _abi.to_c(wrong, counts)
+
+    def test_times_are_numbers(self):
+        for wrong in (math.nan, math.inf, 1e10):
+            with self.assertRaisesRegex(ValueError, "a time must be a number of seconds, but is"):
+                _abi.to_c(Setpoint(velocity_m_s=(1, 0, 0), after_s=wrong))
+
+    def test_a_queue_has_a_depth(self):
+        for depth in (-3, 0, 4097):
+            with self.assertRaisesRegex(InvalidError, f"a queue of {depth} measurements; use 1 to 4096"):
+                FastSensor().set_queue(depth)
 
 
 class FastSensor(vehicle.Sensor[int]):
     """Has a new measurement at each read, as a fast one before a slow computer."""
 
     def __init__(self) -> None:
+        self.name = "fast"
         self._depth = 1
 
     def read_if_available(self) -> int | None:

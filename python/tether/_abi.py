@@ -175,8 +175,8 @@ def joints_of(handle: int | None) -> tuple[samples.Joint, ...]:
     return tuple(joints)
 
 
-def to_c(setpoint: samples.Setpoint) -> CSetpoint:
-    """The struct of a set-point. Raises ValueError for a vector of another length."""
+def to_c(setpoint: samples.Setpoint, counts: dict[str, int] | None = None) -> CSetpoint:
+    """The struct of a set-point. Raises ValueError for a vector of another length; `counts`: of the UAV's lists."""
     c = CSetpoint(after_ns=to_ns(setpoint.after_s), in_heading=setpoint.in_heading)
     for field in dataclasses.fields(setpoint):
         value = getattr(setpoint, field.name)
@@ -184,6 +184,11 @@ def to_c(setpoint: samples.Setpoint) -> CSetpoint:
             continue
         c.mask |= MASK[field.name]
         if field.name in COUNTS:
+            most = len(getattr(c, field.name))
+            needed = (counts or {}).get(field.name) or None
+            if len(value) > most or (needed is not None and len(value) != needed):
+                raise ValueError(f"{field.name} has {len(value)} numbers; the UAV has "
+                                 f"{needed or f'at most {most}'} {COUNTS[field.name]}")
             setattr(c, COUNTS[field.name], len(value))
             getattr(c, field.name)[:len(value)] = [float(number) for number in value]
         elif isinstance(member := getattr(c, field.name), ctypes.Structure):
@@ -196,5 +201,7 @@ def to_c(setpoint: samples.Setpoint) -> CSetpoint:
 
 
 def to_ns(seconds: float) -> int:
-    """Whole nanoseconds of seconds."""
+    """Whole nanoseconds of seconds. Raises ValueError for NaN, and beyond what 64 bits hold."""
+    if not abs(seconds) < 9.2e9:
+        raise ValueError(f"a time must be a number of seconds, but is {seconds}")
     return round(seconds * 1e9)

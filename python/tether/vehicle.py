@@ -193,7 +193,9 @@ class Sensor(Generic[T]):
 
     def set_queue(self, depth: int) -> None:
         """Lets up to `depth` measurements of a periodic sensor wait, 1 to 4096; reads then get the oldest."""
-        check(lib.tether_set_queue(self._vehicle._handle, self._name, min(max(depth, 0), 2**32 - 1)))
+        if not 1 <= depth <= 4096:
+            raise InvalidError(f"'{self.name}' cannot have a queue of {depth} measurements; use 1 to 4096")
+        check(lib.tether_set_queue(self._vehicle._handle, self._name, depth))
         self._depth = depth
 
 
@@ -337,8 +339,12 @@ class Vehicle:
         self.follow([setpoint])
 
     def follow(self, setpoints: Sequence[Setpoint]) -> None:
-        """Follows a trajectory of 1 to 1024 set-points, each until the time of the next one."""
-        c = [to_c(setpoint) for setpoint in setpoints]
+        """Follows a trajectory of 1 to 1024 set-points, each until the time of the next one.
+
+        Raises ValueError for a list of another length than the UAV's, or a time that is none.
+        """
+        counts = {"rotor_speeds_rad_s": self.flight_limits.rotors, "joints_rad": len(self.joints)}
+        c = [to_c(setpoint, counts) for setpoint in setpoints]
         array = (_C_SETPOINT * len(c))(*c)
         check(lib.tether_follow(self._handle, array, len(c), ctypes.sizeof(_C_SETPOINT)))
 

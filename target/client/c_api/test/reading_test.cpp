@@ -136,6 +136,8 @@ TEST(ReadTogether, GivesAnImageOfEachOrNone) {
     tether_image_free(image);
   }
   EXPECT_EQ(tether_read_together(flown.vehicle, cameras, 0, images), TETHER_INVALID);
+  const char* const twice[] = {"camera", "camera"};
+  EXPECT_EQ(tether_read_together(flown.vehicle, twice, 2, images), TETHER_INVALID);
   flown.fake->failure = Failure{Failure::Kind::kRunEnded, "time limit"};
   EXPECT_EQ(tether_read_together(flown.vehicle, cameras, 2, images), TETHER_RUN_ENDED);
   EXPECT_EQ(images[1], nullptr);

@@ -122,8 +122,9 @@ Status InteractingVehicle::set_queue(std::string_view sensor, std::uint32_t dept
   if (found == nullptr) return invalid("is no sensor of this UAV");
   if (found->rate_hz <= 0.0) return invalid("measures on demand, so it has no queue");
   if (depth < 1 || depth > link::kMaxQueue)
-    return invalid("cannot have a queue of " + std::to_string(depth) + " measurements; use 1 to " +
-                   std::to_string(link::kMaxQueue));
+    return invalid("cannot have a queue of " +
+                   std::to_string(static_cast<std::int32_t>(depth)) +  // as callers in C wrote it
+                   " measurements; use 1 to " + std::to_string(link::kMaxQueue));
   queues_[static_cast<std::size_t>(found - catalogue_.sensors.data())] = depth;
   return ok_status();
 }

@@ -48,6 +48,15 @@ Result<std::optional<RadioMessage>> Vehicle::receive_or_measure(Duration,
   return Failure{Failure::Kind::kInvalid, "this vehicle waits for one thing at a time"};
 }
 
+Status each_once(const std::vector<std::string_view>& sensors) {
+  for (auto sensor = sensors.begin(); sensor != sensors.end(); ++sensor)
+    if (std::find(sensors.begin(), sensor, *sensor) != sensor)
+      return Failure{Failure::Kind::kInvalid, "'" + std::string(*sensor) +
+                                                  "' is named twice; name each sensor that is "
+                                                  "read together once"};
+  return ok_status();
+}
+
 Duration most_apart(const uav::Catalogue& catalogue, const std::vector<std::string_view>& sensors) {
   double highest_rate_hz = 0.0;
   bool own_stamps = false;

@@ -34,6 +34,10 @@ class SimulatedVehicleTest : public testing::Test {
              bool free_running = false, bool own_stamps = false) {
     link::Welcome welcome = welcome_with_sensors();
     welcome.catalogue.sensors[0].own_stamps = own_stamps;
+    for (const std::size_t twin : {0u, 2u}) {
+      welcome.catalogue.sensors.push_back(welcome.catalogue.sensors[twin]);
+      welcome.catalogue.sensors.back().name += " 2";
+    }
     welcome.free_running = free_running;
     coordinator_ = std::make_unique<ScriptedCoordinator>(welcome, std::move(answer));
     auto wall = std::make_unique<FakeWallTimer>();
@@ -100,6 +104,8 @@ TEST_F(SimulatedVehicleTest, ReadsFromAQueueWhereOneIsSet) {
   });
   for (const std::uint32_t depth : {0u, 4097u})
     expect_failure(vehicle_->set_queue("down", depth), Failure::Kind::kInvalid, "1 to 4096");
+  expect_failure(vehicle_->set_queue("down", static_cast<std::uint32_t>(-3)),
+                 Failure::Kind::kInvalid, "a queue of -3");
   expect_failure(vehicle_->set_queue("imu", 5), Failure::Kind::kInvalid, "on demand");
   expect_failure(vehicle_->set_queue("nose", 5), Failure::Kind::kInvalid, "no sensor");
   ASSERT_TRUE(vehicle_->set_queue("down", 5).ok());
@@ -119,9 +125,12 @@ TEST_F(SimulatedVehicleTest, ReadsSensorsOfOneInstantTogether) {
     uav::RangeSample sample{from_ns<SimTime>(r.sequence == 1 ? 1 : 2), r.sequence, 1.5};
     return one(Reply{r.sequence, from_ns<ExecTime>(9), sample});
   });
-  const auto both = read_together<uav::RangeSample>(*vehicle_, {"down", "down"});
+  const auto both = read_together<uav::RangeSample>(*vehicle_, {"down", "down 2"});
   ASSERT_TRUE(both) << both.failure().message;
   EXPECT_EQ((*both)[0].sampled_at, (*both)[1].sampled_at);
+  EXPECT_EQ(coordinator_->requests().size(), 3u);
+  expect_failure(read_together<uav::RangeSample>(*vehicle_, {"down", "down 2", "down"}),
+                 Failure::Kind::kInvalid, "'down' is named twice");
   EXPECT_EQ(coordinator_->requests().size(), 3u);
 }
 
@@ -148,7 +157,7 @@ TEST_F(SimulatedVehicleTest, PairsTheNearestStampsOfDrivers) {
         return one(Reply{r.sequence, from_ns<ExecTime>(200'000'000), sample});
       },
       false, true);
-  const auto both = read_together<uav::CameraSample>(*vehicle_, {"camera", "camera"});
+  const auto both = read_together<uav::CameraSample>(*vehicle_, {"camera", "camera 2"});
   ASSERT_TRUE(both) << both.failure().message;
   EXPECT_EQ(to_ns((*both)[0].sampled_at) - to_ns((*both)[1].sampled_at), 8'000'000);
   EXPECT_EQ(coordinator_->requests().size(), 3u);

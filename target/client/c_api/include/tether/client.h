@@ -380,7 +380,8 @@ const uint16_t* tether_image_labels(const tether_image* image) TETHER_NOEXCEPT;
 /// Stamps are equal, or of cameras whose driver stamps, within half of the shortest period.
 /// @param vehicle  the UAV  @param cameras  names  @param count  how many; at least 1
 /// @param[out] out  `count` images; free each with tether_image_free()
-/// @return TETHER_OK or an @ref interaction error; TETHER_INVALID if there is no common instant
+/// @return TETHER_OK or an @ref interaction error; TETHER_INVALID if a camera is named
+///   twice, or if there is no common instant
 tether_status tether_read_together(tether_vehicle* vehicle, const char* const* cameras,
                                    size_t count, tether_image** out) TETHER_NOEXCEPT;
 

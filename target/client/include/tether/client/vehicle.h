@@ -152,15 +152,19 @@ Result<std::vector<Sample>> read_all(Vehicle& vehicle, std::string_view sensor) 
 /// period if the driver of one of the sensors stamps by a clock of its own.
 Duration most_apart(const uav::Catalogue& catalogue, const std::vector<std::string_view>& sensors);
 
+/// kInvalid if a sensor is named twice: a measurement is read once.
+Status each_once(const std::vector<std::string_view>& sensors);
+
 /// One measurement of each sensor, all of one instant: for a stereo pair, or colour and depth.
 /// Reads those that are behind until all stamps are within `most_apart`: equal, or as a driver's
 /// synchroniser pairs them. Needs a queue of a few measurements (`set_queue`), so that what one
-/// sensor delivers earlier is not lost. Fails with kInvalid if after 1,000 reads there was no
-/// common instant.
+/// sensor delivers earlier is not lost. Fails with kInvalid as `each_once`, and if after 1,000
+/// reads there was no common instant.
 template <class Sample>
 Result<std::vector<Sample>> read_together(Vehicle& vehicle,
                                           const std::vector<std::string_view>& sensors) {
   constexpr int kMostReads = 1000;
+  if (const Status once = each_once(sensors); !once) return once.failure();
   const Duration apart = most_apart(vehicle.catalogue(), sensors);
   std::vector<Sample> samples(sensors.size());
   std::vector<SimTime> stamps(sensors.size(), SimTime::min());  // which is: not read
