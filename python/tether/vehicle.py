@@ -192,7 +192,10 @@ class Sensor(Generic[T]):
         return waiting
 
     def set_queue(self, depth: int) -> None:
-        """Lets up to `depth` measurements of a periodic sensor wait, 1 to 4096; reads then get the oldest."""
+        """Lets up to `depth` measurements of a periodic sensor wait, 1 to 4096; reads then get the oldest.
+
+        In free running, only the newest waits; the result says how many had no place.
+        """
         if not 1 <= depth <= 4096:
             raise InvalidError(f"'{self.name}' cannot have a queue of {depth} measurements; use 1 to 4096")
         check(lib.tether_set_queue(self._vehicle._handle, self._name, depth))

@@ -405,7 +405,8 @@ RunReport Coordinator::Impl::close_run() {
                            .sut = session.hello.sut,
                            .finish = session.finish,
                            .et = time_of(session).bound(),
-                           .looks = looks_.of(session.uav)});
+                           .looks = looks_.of(session.uav),
+                           .unqueued = stepper_.sampler(session.uav).unqueued()});
   }
   if (!is_running()) return report;
 

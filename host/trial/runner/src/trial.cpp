@@ -55,7 +55,7 @@ std::vector<campaign::TaskEnd> task_ends(const TrialSpec& spec,
                                          const coordinator::RunReport& report) {
   std::vector<campaign::TaskEnd> ends;
   for (std::size_t i = 0; i < report.suts.size(); ++i) {
-    const auto& [uav, sut, finish, et, looks] = report.suts[i];
+    const auto& [uav, sut, finish, et, looks, unqueued] = report.suts[i];
     if (!finish) continue;
     std::string outcome = finish->outcome;
     // A program as it is tells why in its output only.

@@ -380,6 +380,12 @@ TrialEnd TrialRun::fly(std::optional<MachineWatch>& machine) {
   if (machine) machine->end_of_run();
   refusals_.close();
   notes_ = stalls.notes(host_clocks());
+  for (const coordinator::SutReport& sut : end.report.suts)
+    for (const auto& [sensor, count] : sut.unqueued)
+      notes_.push_back(
+          fmt::format("in free running nothing waits: {} measurements of '{}' of {} "
+                      "had no place in its queue",
+                      count, sensor, sut.uav));
   return end;
 }
 

@@ -15,6 +15,7 @@ std::optional<Measurement> Sampler::plan(std::uint64_t call, const link::ReadSen
   const auto measurement = read.only_if_available ? schedule.choose_available(t, read.latest)
                                                   : schedule.choose(t, read.latest);
   if (!measurement) return std::nullopt;
+  if (!read.latest) sensors_[read.sensor].unqueued += schedule.unqueued(*measurement, read.queue);
   schedule.mark_read(*measurement);
   sensors_[read.sensor].forecast.requested(t, read.latest, measurement->index);
   sensors_[read.sensor].forecasted.reset();
@@ -22,6 +23,13 @@ std::optional<Measurement> Sampler::plan(std::uint64_t call, const link::ReadSen
   reads_.push_back(
       {.call = call, .sensor = read.sensor, .measurement = *measurement, .on_demand = on_demand});
   return measurement;
+}
+
+std::vector<std::pair<std::string, std::uint64_t>> Sampler::unqueued() const {
+  std::vector<std::pair<std::string, std::uint64_t>> unqueued;
+  for (const Sensor& sensor : sensors_)
+    if (sensor.unqueued > 0) unqueued.emplace_back(sensor.name, sensor.unqueued);
+  return unqueued;
 }
 
 std::optional<std::uint64_t> Sampler::skip(const link::ReadSensor& read, SimTime t) {

@@ -32,6 +32,8 @@ class Sampler {
     bool is_drawn = false;           ///< its measurements are announced
     ReadForecast forecast{};
     std::optional<std::uint64_t> forecasted{};  ///< a measurement that is not yet announced
+    std::uint64_t unqueued =
+        0;  ///< measurements that its queue would have had, but for free running
   };
   /// The simulator's state at the present ST.
   using Capture = std::function<SharedState()>;
@@ -50,6 +52,8 @@ class Sampler {
   /// What was not read by `t` counts as read. The last such measurement; none: there is none.
   /// @pre the sensor exists and is periodic
   std::optional<std::uint64_t> skip(const link::ReadSensor& read, SimTime t);
+  /// Of each sensor that lacks its queue: its name, and the measurements that this has cost.
+  std::vector<std::pair<std::string, std::uint64_t>> unqueued() const;
   /// When a read at `t` would get a measurement. @pre the sensor exists and is periodic.
   SimTime next_available(std::size_t sensor, SimTime t) const {
     return sensors_[sensor].schedule.choose(t, false).available_at;

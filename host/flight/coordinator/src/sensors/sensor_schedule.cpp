@@ -140,6 +140,15 @@ std::uint64_t SensorSchedule::oldest_unread(const uav::PeriodicTiming& timing, S
   return next_arriving(first);
 }
 
+// A queue fills from the first read on.
+std::uint64_t SensorSchedule::unqueued(const Measurement& measurement, std::uint32_t queue) const {
+  if (!std::holds_alternative<Topic>(timing_) || unread_ == 0) return 0;
+  std::uint64_t count = 0;
+  for (std::uint64_t k = std::max(measurement.index, unread_); k-- > unread_ && count + 1 < queue;)
+    if (!driver_.loses(k)) ++count;
+  return count;
+}
+
 void SensorSchedule::mark_read(const Measurement& measurement) {
   unread_ = std::max(unread_, measurement.index + 1);
   last_stamp_ = std::max(last_stamp_, measurement.stamp.value_or(SimTime{}));

@@ -75,6 +75,20 @@ TEST(SensorSchedule, FreeRunningReadsGetTheStateAtOnceOncePerPeriod) {
   EXPECT_EQ(on_demand.choose(ms(7), false), (Measurement{0, ms(7), ms(7)}));
 }
 
+// Measurements 2 and 3 passed by, of which a queue of 2 has one.
+TEST(SensorSchedule, FreeRunningCountsWhatAQueueWouldHaveHad) {
+  SensorSchedule free = SensorSchedule::in_free_running(every_33_ms(milliseconds(10)));
+  const Measurement later{4, ms(150), ms(150)};
+  EXPECT_EQ(free.unqueued(later, 9), 0u) << "it fills from the first read on";
+  free.mark_read({1, ms(40), ms(40)});
+  EXPECT_EQ(free.unqueued(later, 9), 2u);
+  EXPECT_EQ(free.unqueued(later, 2), 1u);
+  EXPECT_EQ(free.unqueued(later, 1), 0u) << "no queue";
+  SensorSchedule synchronised = camera(milliseconds(10));
+  synchronised.mark_read({1, ms(33), ms(43)});
+  EXPECT_EQ(synchronised.unqueued(later, 9), 0u);
+}
+
 // Synchronised and in free running; measurement 1 (of 33 ms, available at 43 ms) has been read.
 TEST(SensorSchedule, ReadsIfAvailableDoNotWait) {
   SensorSchedule schedule = camera(milliseconds(10));

@@ -323,7 +323,8 @@ enum {
 /// oldest that was not read (TETHER_READ_LATEST: still the newest); if more wait, the oldest are
 /// lost, which the samples' `index` shows. To get all that have arrived, read with
 /// TETHER_READ_IF_AVAILABLE until TETHER_NOTHING_YET. The queue fills from the next read on. No
-/// interaction. In free running, only the newest waits.
+/// interaction. In free running, only the newest waits; the
+/// result says how many had no place.
 /// @param vehicle  the UAV  @param sensor  its name
 /// @param depth  how many wait; 1 to 4096; 1, as at first: only the newest
 /// @return TETHER_OK; TETHER_INVALID for another depth, if there is no such sensor, or if it
