@@ -18,7 +18,7 @@ STRUCTS = {
     "tether_imu_sample": samples.ImuSample, "tether_range_sample": samples.RangeSample,
     "tether_navsat_sample": samples.NavSatSample, "tether_magnetometer_sample": samples.MagnetometerSample,
     "tether_barometer_sample": samples.BarometerSample, "tether_odometry_sample": samples.OdometrySample,
-    "tether_battery_sample": samples.BatterySample, "tether_flight_limits": samples.FlightLimits,
+    "tether_joint_state_sample": samples.JointStateSample, "tether_battery_sample": samples.BatterySample, "tether_flight_limits": samples.FlightLimits,
 }  # fmt: skip
 # Callbacks are not for an interpreter that one thread at a time may use; the others have a counterpart that is bound.
 NOT_BOUND = re.compile("tether_(subscri|unsubscribe|on_|scan$|client_abi_version|status_name|image_copy|"

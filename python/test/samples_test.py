@@ -81,6 +81,10 @@ class Samples(unittest.TestCase):
         self.assertEqual((sample.latitude_deg, sample.longitude_deg, sample.altitude_m), (50.0, 8.0, 300.0))
         self.assertEqual(sample.velocity_ENU_m_s, Vec3(0.0, 2.0, 0.0))
 
+    def test_of_joints_have_an_angle_for_each(self):
+        c = _abi.struct_of(samples.JointStateSample)(7, 3, 2, 0, (0.5, -0.25, 0, 0))
+        self.assertEqual(_abi.to_python(samples.JointStateSample, c).angles_rad, (0.5, -0.25))
+
     def test_seconds_become_whole_nanoseconds(self):
         self.assertEqual([_abi.to_ns(s) for s in (0.1, 1e-9, -1.5, 86400.000000001)],
                          [100_000_000, 1, -1_500_000_000, 86_400_000_000_001])

@@ -11,8 +11,8 @@ from .errors import (
 from .record import Record
 from .runs import Campaign, Metric, Result, campaign, program, run
 from .samples import (
-    Anchor, BarometerSample, BatterySample, CameraModel, FlightLimits, ImageInfo, ImuSample, Joint, Kind,
-    MagnetometerSample, Message, NavSatSample, OdometrySample, Pose, Quat, RangeSample, ScanModel, Setpoint, Shape,
+    Anchor, BarometerSample, BatterySample, CameraModel, FlightLimits, ImageInfo, ImuSample, Joint, JointStateSample,
+    Kind, MagnetometerSample, Message, NavSatSample, OdometrySample, Pose, Quat, RangeSample, ScanModel, Setpoint, Shape,
     Vec3,
 )  # fmt: skip
 from .vehicle import Image, Scan, Sensor, Vehicle, connect, library_version
@@ -20,7 +20,7 @@ from .vehicle import Image, Scan, Sensor, Vehicle, connect, library_version
 __all__ = [
     "Anchor", "BarometerSample", "BatterySample", "CameraModel", "Campaign", "Code", "CommandError",
     "DisconnectedError", "FlightLimits", "Image", "ImageInfo", "ImuSample", "InternalError", "InvalidError", "Joint",
-    "Kind", "MagnetometerSample", "Message", "Metric", "NavSatSample", "NoAnswerError", "NoMemoryError",
+    "JointStateSample", "Kind", "MagnetometerSample", "Message", "Metric", "NavSatSample", "NoAnswerError", "NoMemoryError",
     "OdometrySample", "Pose", "ProtocolError", "Quat", "RangeSample", "Record", "RecordError", "RefusedError", "Result",
     "RunEndedError", "Scan", "ScanModel", "Sensor", "Setpoint", "Shape", "TetherError", "Vec3", "Vehicle", "campaign",
     "connect", "library_version", "program", "run",

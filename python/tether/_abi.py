@@ -42,6 +42,7 @@ FUNCTIONS = {
     "tether_image_labels": "pp", "tether_read_together": "ippzp",
     "tether_read_imu": "ipsipz", "tether_read_range": "ipsipz", "tether_read_navsat": "ipsipz",
     "tether_read_magnetometer": "ipsipz", "tether_read_barometer": "ipsipz", "tether_read_odometry": "ipsipz",
+    "tether_read_joint_state": "ipsipz",
     "tether_read_scan": "ipsipzpz", "tether_read_scan_intensities": "ipsippzpz", "tether_read_battery": "ippz",
     "tether_command_velocity": "ipdddd", "tether_follow": "ippzz", "tether_get_flight_limits": "ippz",
     "tether_joint_count": "zp", "tether_get_joint": "ipzpz", "tether_sensor_joints": "zp",
@@ -105,6 +106,7 @@ def is_there(status: int) -> bool:
 # ---- Structs -------------------------------------------------------------------------------------
 
 _STRUCTS: dict[type, type[ctypes.Structure]] = {}
+_CONVERSIONS: dict[Any, Callable[[Any], Any]] = {bool: bool, tuple[float, ...]: tuple}
 _MEMBERS: dict[type, list[tuple[str, Callable[[Any], Any] | None]]] = {}  # and what makes Python's value, if anything
 
 
@@ -117,7 +119,7 @@ def struct_of(sample: type) -> type[ctypes.Structure]:
             first, *padding = getattr(hint, "__metadata__", None) or (struct_of(hint),)
             fields += [(name, first)] + [("reserved", kind) for kind in padding]
             is_struct = hint in _STRUCTS
-            convert = functools.partial(to_python, hint) if is_struct else bool if hint.__origin__ is bool else None
+            convert = functools.partial(to_python, hint) if is_struct else _CONVERSIONS.get(hint.__origin__)
             _MEMBERS[sample].append((name, convert))
         _STRUCTS[sample] = type(sample.__name__, (ctypes.Structure,), {"_fields_": fields})
     return _STRUCTS[sample]

@@ -19,6 +19,7 @@ Float = Annotated[float, ctypes.c_double]
 # What follows the type are members of the struct that say nothing.
 PaddedBool = Annotated[bool, ctypes.c_int32, ctypes.c_int32]
 PaddedUInt32 = Annotated[int, ctypes.c_uint32, ctypes.c_uint32]
+FourFloats = Annotated[tuple[float, ...], ctypes.c_double * 4]
 
 
 class Kind(enum.IntEnum):
@@ -36,6 +37,7 @@ class Kind(enum.IntEnum):
     BAROMETER = 8
     ODOMETRY = 9
     SCAN = 10
+    JOINT_STATE = 11
 
     @classmethod
     def _missing_(cls, value: object) -> "Kind":
@@ -214,6 +216,19 @@ class OdometrySample:
     position_stddev_m: Vec3
     attitude_stddev_rad: Vec3
     velocity_stddev_m_s: Vec3
+
+
+@dataclass(frozen=True)
+class JointStateSample:
+    """The angles of all joints, in the order of Vehicle.joints."""
+
+    sampled_at_ns: Int64
+    index: UInt64
+    joints: PaddedUInt32
+    angles_rad: FourFloats
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "angles_rad", self.angles_rad[:self.joints])
 
 
 @dataclass(frozen=True)

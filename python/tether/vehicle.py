@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 from ._abi import check, filled, is_there, joints_of, lib, struct_of, to_c, to_ns, to_python
 from .errors import InvalidError, need
 from .samples import (
-    CAMERAS, Anchor, BarometerSample, BatterySample, CameraModel, FlightLimits, ImageInfo, ImuSample, Kind,
-    MagnetometerSample, Message, NavSatSample, OdometrySample, Pose, RangeSample, ScanInfo, ScanModel, Setpoint, Shape,
+    CAMERAS, Anchor, BarometerSample, BatterySample, CameraModel, FlightLimits, ImageInfo, ImuSample, JointStateSample,
+    Kind, MagnetometerSample, Message, NavSatSample, OdometrySample, Pose, RangeSample, ScanInfo, ScanModel, Setpoint, Shape,
     Vec3,
 )  # fmt: skip
 
@@ -209,6 +209,7 @@ _READS: dict[Kind, tuple[str, type[Any]]] = {
     Kind.MAGNETOMETER: ("tether_read_magnetometer", MagnetometerSample),
     Kind.BAROMETER: ("tether_read_barometer", BarometerSample),
     Kind.ODOMETRY: ("tether_read_odometry", OdometrySample),
+    Kind.JOINT_STATE: ("tether_read_joint_state", JointStateSample),
 }
 
 
@@ -299,6 +300,10 @@ class Vehicle:
     def odometry(self, sensor: str | int = 0) -> Sensor[OdometrySample]:
         """A source of odometry, by its name or its index among these."""
         return self._find(sensor, {Kind.ODOMETRY})
+
+    def joint_state(self, sensor: str | int = 0) -> Sensor[JointStateSample]:
+        """The sensor of the angles of all joints, which every UAV with joints has."""
+        return self._find(sensor, {Kind.JOINT_STATE})
 
     def scan(self, sensor: str | int = 0) -> Sensor[Scan]:
         """A lidar, by its name or its index among these."""

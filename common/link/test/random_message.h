@@ -61,7 +61,7 @@ class RandomMessage {
 
   uav::SensorDescription sensor(std::size_t i) {
     uav::SensorDescription out{"s" + std::to_string(i), {vec3(), quat()}, number(), {}};
-    const std::uint32_t kind = random_.bits() % 5;
+    const std::uint32_t kind = random_.bits() % 6;
     if (kind == 0)
       out.properties = uav::CameraProperties{
           {640, 480, 1.0 + number(), 2.0, number(), number(), 0.1, 0.2, 0.3, 0.4, number()},
@@ -73,6 +73,7 @@ class RandomMessage {
     if (kind == 2) out.properties = uav::RangeProperties{0.1, 0.2 + number()};
     if (kind == 3) out.properties = uav::ScanProperties{.columns = 9, .rows = 2, .max_m = number()};
     if (kind == 4) out.properties = uav::OdometryProperties{};
+    if (kind == 5) out.properties = uav::JointStateProperties{};
     out.own_stamps = random_.bits() % 2 == 0;
     return out;
   }
@@ -178,7 +179,8 @@ class RandomMessage {
   Message reply() {
     Reply out{1 + word() / 2, time<ExecTime>(), {}};
     constexpr double kInf = std::numeric_limits<double>::infinity();
-    const std::uint32_t kind = random_.bits() % 10;
+    const std::uint32_t kind = random_.bits() % 11;
+    if (kind == 10) out.sample = uav::JointStateSample{time<SimTime>(), word(), {number(), -0.5}};
     if (kind == 5) out.sample = navsat();
     if (kind == 6) out.sample = uav::MagnetometerSample{time<SimTime>(), word(), vec3()};
     if (kind == 7) out.sample = uav::BarometerSample{time<SimTime>(), word(), number(), number()};

@@ -35,6 +35,8 @@ TEST(Schema, HasTheFieldsOfEachMessageInTheirOrder) {
   expect_same<uav::OdometrySample>("OdometrySample");
   expect_same<uav::ScanProperties>("ScanProperties");
   expect_same<uav::ScanSample>("ScanSample");
+  expect_same<uav::JointStateProperties>("JointStateProperties");
+  expect_same<uav::JointStateSample>("JointStateSample");
   expect_same<uav::RangeSample>("RangeSample");
   expect_same<uav::BatterySample>("BatterySample");
   expect_same<uav::SensorDescription>("Sensor");

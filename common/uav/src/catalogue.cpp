@@ -16,8 +16,8 @@ const T* find_by_name(const std::vector<T>& things, std::string_view name) {
 }  // namespace
 
 std::string_view name(SensorKind kind) {
-  return enum_name(
-      kind, {"camera", "imu", "range", "navsat", "magnetometer", "barometer", "odometry", "scan"});
+  return enum_name(kind, {"camera", "imu", "range", "navsat", "magnetometer", "barometer",
+                          "odometry", "scan", "joint_state"});
 }
 
 std::string_view name(CameraKind kind) {

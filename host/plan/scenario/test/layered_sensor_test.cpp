@@ -143,6 +143,12 @@ TEST_F(Layered, EveryKeyOfAnOdometryArrives) {
       ElementsAre(1.0, 2.0, 3.0, 4.0, 5.0));
 }
 
+TEST_F(Layered, EveryKeyOfAJointStateArrives) {
+  sim::Sensor joints{"joint_state", {}, 0.0, sim::JointStateModel{}};
+  lay(joints, {layer("joint_state", "angle_noise_rad = { stddev = 0.1 }\n")});
+  EXPECT_EQ(std::get<sim::JointStateModel>(joints.model).angle_rad.stddev, 0.1);
+}
+
 TEST_F(Layered, EveryKeyOfALidarArrives) {
   sim::Sensor lidar{"lidar", {}, 10.0, sim::ScanModel{}};
   lay(lidar, {layer("scan",

@@ -30,6 +30,10 @@ uav::OdometryProperties describe(const World&, const OdometryModel&) {
   return {};
 }
 
+uav::JointStateProperties describe(const World&, const JointStateModel&) {
+  return {};
+}
+
 uav::ScanProperties describe(const World&, const ScanModel& scan) {
   return scan.rays;
 }

@@ -62,6 +62,8 @@ inline constexpr std::size_t kFirstSize<tether_barometer_sample> = 32;
 template <>
 inline constexpr std::size_t kFirstSize<tether_odometry_sample> = 192;
 template <>
+inline constexpr std::size_t kFirstSize<tether_joint_state_sample> = 56;
+template <>
 inline constexpr std::size_t kFirstSize<tether_scan_model> = 64;
 template <>
 inline constexpr std::size_t kFirstSize<tether_scan_info> = 24;

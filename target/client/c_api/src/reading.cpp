@@ -241,6 +241,12 @@ tether_status tether_read_odometry(tether_vehicle* vehicle, const char* sensor,
   return read_struct<tether::uav::OdometrySample>(vehicle, sensor, mode, out, size);
 }
 
+tether_status tether_read_joint_state(tether_vehicle* vehicle, const char* sensor,
+                                      tether_read_mode mode, tether_joint_state_sample* out,
+                                      size_t size) noexcept {
+  return read_struct<tether::uav::JointStateSample>(vehicle, sensor, mode, out, size);
+}
+
 tether_status tether_read_scan(tether_vehicle* vehicle, const char* sensor, tether_read_mode mode,
                                float* ranges_m, size_t capacity, tether_scan_info* info,
                                size_t info_size) noexcept {

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <cstdint>
+
 #include <tether/base/time.h>
 #include <tether/client.h>
 #include <tether/uav/catalogue.h>
@@ -55,6 +58,16 @@ inline tether_odometry_sample to_c(const uav::OdometrySample& sample) {
           to_c(sample.position_stddev_m),
           to_c(sample.attitude_stddev_rad),
           to_c(sample.velocity_stddev_m_s)};
+}
+/// @pre at most as many angles as the struct has room for
+inline tether_joint_state_sample to_c(const uav::JointStateSample& sample) {
+  tether_joint_state_sample c{to_ns(sample.sampled_at),
+                              sample.index,
+                              static_cast<std::uint32_t>(sample.angles_rad.size()),
+                              0,
+                              {}};
+  std::copy(sample.angles_rad.begin(), sample.angles_rad.end(), c.angles_rad);
+  return c;
 }
 /// Shows the distances of `sample`.
 inline tether_scan to_c(const uav::ScanSample& sample) {

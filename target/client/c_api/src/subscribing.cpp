@@ -101,6 +101,12 @@ tether_status tether_subscribe_odometry(tether_vehicle* vehicle, const char* sen
   return subscribe_struct<tether::uav::OdometrySample>(vehicle, sensor, on_sample, user, out);
 }
 
+tether_status tether_subscribe_joint_state(tether_vehicle* vehicle, const char* sensor,
+                                           tether_on_joint_state on_sample, void* user,
+                                           tether_subscription** out) noexcept {
+  return subscribe_struct<tether::uav::JointStateSample>(vehicle, sensor, on_sample, user, out);
+}
+
 tether_status tether_subscribe_scan(tether_vehicle* vehicle, const char* sensor,
                                     tether_on_scan on_scan, void* user,
                                     tether_subscription** out) noexcept {

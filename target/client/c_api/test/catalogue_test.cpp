@@ -52,7 +52,7 @@ TEST(Sensors, OtherCamerasHaveKindsOfTheirOwn) {
 
 TEST(Catalogue, HasNothingBeyondItsEnd) {
   const Flown flown;
-  EXPECT_EQ(tether_sensor_at(flown.vehicle, 11), nullptr);
+  EXPECT_EQ(tether_sensor_at(flown.vehicle, 12), nullptr);
   EXPECT_EQ(tether_anchor_get_shape(tether_anchor_at(flown.vehicle, 1)), TETHER_SPHERE);
   EXPECT_EQ(tether_anchor_at(flown.vehicle, 2), nullptr);
   EXPECT_EQ(tether_find_anchor(flown.vehicle, ""), nullptr);

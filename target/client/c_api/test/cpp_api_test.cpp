@@ -34,7 +34,7 @@ class CppApi : public testing::Test {
 
 TEST_F(CppApi, KnowsTheCatalogue) {
   EXPECT_STREQ(vehicle_.uav_name(), "uav1");
-  ASSERT_EQ(vehicle_.sensor_count(), 11u);
+  ASSERT_EQ(vehicle_.sensor_count(), 12u);
   const auto camera = vehicle_.find_sensor("camera");
   ASSERT_TRUE(camera.has_value());
   EXPECT_EQ(camera->kind(), api::SensorKind::kCamera);
@@ -175,9 +175,12 @@ TEST_F(CppApi, SubscribesToEveryKindOfNavigation) {
   position.latitude_deg = 48.0;
   uav::OdometrySample pose;
   pose.p_WS.z = 3.0;
-  fake_->navigation = {position, uav::MagnetometerSample{from_ns<SimTime>(2), 2, {1e-5, 2e-5, 0}},
-                       uav::BarometerSample{from_ns<SimTime>(3), 3, 9e4, 900.0}, pose,
-                       uav::ScanSample{from_ns<SimTime>(5), 5, {1.5F, 2.5F}}};
+  fake_->navigation = {position,
+                       uav::MagnetometerSample{from_ns<SimTime>(2), 2, {1e-5, 2e-5, 0}},
+                       uav::BarometerSample{from_ns<SimTime>(3), 3, 9e4, 900.0},
+                       pose,
+                       uav::ScanSample{from_ns<SimTime>(5), 5, {1.5F, 2.5F}},
+                       uav::JointStateSample{from_ns<SimTime>(6), 6, {0.5, -0.25}}};
   std::vector<double> got;
   const auto deliver_one = [&](auto subscribe) {
     fake_->reads_left = 1;
@@ -207,7 +210,18 @@ TEST_F(CppApi, SubscribesToEveryKindOfNavigation) {
                              static_cast<double>(s.ranges_m[1])});
     });
   });
-  EXPECT_EQ(got, (std::vector<double>{48.0, 2e-5, 9e4, 3.0, 5.0, 2.0, 2.5}));
+  deliver_one([&] {
+    return vehicle_.subscribe_joint_state("joint_state", [&](const api::JointStateSample& s) {
+      got.insert(got.end(), s.angles_rad, s.angles_rad + s.joints);
+    });
+  });
+  EXPECT_EQ(got, (std::vector<double>{48.0, 2e-5, 9e4, 3.0, 5.0, 2.0, 2.5, 0.5, -0.25}));
+  fake_->reads_left.reset();
+  const auto angles = vehicle_.read_joint_state("joint_state");
+  ASSERT_TRUE(angles.ok());
+  EXPECT_EQ(angles->joints, 2u);
+  EXPECT_EQ(angles->angles_rad[1], -0.25);
+  EXPECT_EQ(angles->angles_rad[2], 0.0);
 }
 
 TEST_F(CppApi, FailuresKeepTheirMessageAfterTheNextCall) {

@@ -91,6 +91,7 @@ TEST(FirstSize, IsCurrentSize) {
   EXPECT_EQ(kFirstSize<tether_magnetometer_sample>, sizeof(tether_magnetometer_sample));
   EXPECT_EQ(kFirstSize<tether_barometer_sample>, sizeof(tether_barometer_sample));
   EXPECT_EQ(kFirstSize<tether_odometry_sample>, sizeof(tether_odometry_sample));
+  EXPECT_EQ(kFirstSize<tether_joint_state_sample>, sizeof(tether_joint_state_sample));
   EXPECT_EQ(kFirstSize<tether_scan_model>, sizeof(tether_scan_model));
   EXPECT_EQ(kFirstSize<tether_scan_info>, sizeof(tether_scan_info));
 }

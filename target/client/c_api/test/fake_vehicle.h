@@ -41,7 +41,8 @@ class FakeVehicle final : public client::Vehicle {
         {"compass", {}, 10.0, uav::MagnetometerProperties{}},
         {"air", {}, 10.0, uav::BarometerProperties{}},
         {"pose", {}, 50.0, uav::OdometryProperties{}},
-        {"lidar", {}, 10.0, uav::ScanProperties{}}};
+        {"lidar", {}, 10.0, uav::ScanProperties{}},
+        {"joint_state", {}, 10.0, uav::JointStateProperties{}}};
     catalogue_.anchors = {{"blue_box", uav::AnchorShape::kBox, {0.4, 0.5, 0.6}, {0.05, 0.15, 0.85}},
                           {"ball", uav::AnchorShape::kSphere, {0.2, 0.2, 0.2}, {1.0, 0.0, 0.0}}};
     catalogue_.battery_capacity_C = 7200.0;

@@ -71,6 +71,10 @@ LIES_AT(tether_odometry_sample, position_stddev_m, 120);
 LIES_AT(tether_odometry_sample, attitude_stddev_rad, 144);
 LIES_AT(tether_odometry_sample, velocity_stddev_m_s, 168);
 
+HOLDS(joint_state_sample, sizeof(tether_joint_state_sample) >= 56);
+LIES_AT(tether_joint_state_sample, joints, 16);
+LIES_AT(tether_joint_state_sample, angles_rad, 24);
+
 HOLDS(battery_sample, sizeof(tether_battery_sample) >= 40);
 LIES_AT(tether_battery_sample, sampled_at_ns, 0);
 LIES_AT(tether_battery_sample, voltage_v, 8);

@@ -33,7 +33,8 @@ enum class SensorKind {
   kMagnetometer,
   kBarometer,
   kOdometry,
-  kScan
+  kScan,
+  kJointState
 };
 std::string_view name(SensorKind kind);
 
@@ -68,7 +69,8 @@ struct SensorDescription {
   double rate_hz = 0.0;  ///< of a periodic sensor; 0 for one that measures on demand
   /// In the order of SensorKind.
   std::variant<CameraProperties, ImuProperties, RangeProperties, NavSatProperties,
-               MagnetometerProperties, BarometerProperties, OdometryProperties, ScanProperties>
+               MagnetometerProperties, BarometerProperties, OdometryProperties, ScanProperties,
+               JointStateProperties>
       properties;
   /// Its samples have the stamps of a clock that is not exactly the SUT's: they can be later than
   /// the read.

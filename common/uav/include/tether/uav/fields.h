@@ -171,6 +171,8 @@ void fields(auto& io, Is<ScanProperties> auto& m) {
       "columns x rows", "is not within 1..262144");
 }
 
+void fields(auto&, Is<JointStateProperties> auto&) {}
+
 void fields(auto& io, Is<SensorDescription> auto& m) {
   io.here([&m] { return "sensor '" + m.name.substr(0, kMaxNameBytes) + "': "; });
   io("name", m.name, wire::AtMost{kMaxNameBytes}, wire::kNotEmpty);
@@ -305,6 +307,11 @@ void fields(auto& io, Is<ScanSample> auto& m) {
   io("intensities", m.intensities, wire::OmitEmpty{}, wire::AtMost{kMaxScanRays});
   io.require([&m] { return m.intensities.empty() || m.intensities.size() == m.ranges_m.size(); },
              "intensities", "are not as many as the ranges");
+}
+void fields(auto& io, Is<JointStateSample> auto& m) {
+  io("sampled_at_st_ns", m.sampled_at);
+  io("index", m.index);
+  io("angles_rad", m.angles_rad, wire::OmitEmpty{}, wire::AtMost{kMaxJoints});
 }
 void fields(auto& io, Is<BatterySample> auto& m) {
   io("sampled_at_st_ns", m.sampled_at);

@@ -1,9 +1,12 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
+#include <tether/base/time.h>
 #include <tether/uav/math.h>
 
 namespace tether::uav {
@@ -20,6 +23,14 @@ struct Joint {
   friend bool operator==(const Joint&, const Joint&) = default;
 };
 inline constexpr std::size_t kMaxJoints = 4;
+
+/// The sensor of all joints of a UAV.
+struct JointStateProperties {};
+struct JointStateSample {
+  SimTime sampled_at;
+  std::uint64_t index = 0;           ///< number of this measurement of the sensor
+  std::vector<double> angles_rad{};  ///< of all joints, from the body outwards
+};
 
 /// Its angle before the first command: 0, or the limit that is nearest to 0.
 double start_rad(const Joint& joint);

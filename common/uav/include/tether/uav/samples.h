@@ -69,7 +69,7 @@ struct BatterySample {
 
 /// In the order of SensorKind.
 using Sample = std::variant<CameraSample, ImuSample, RangeSample, NavSatSample, MagnetometerSample,
-                            BarometerSample, OdometrySample, ScanSample>;
+                            BarometerSample, OdometrySample, ScanSample, JointStateSample>;
 /// The kind of sensor that measures such samples.
 template <class OneSample>
 constexpr SensorKind kind_of() {

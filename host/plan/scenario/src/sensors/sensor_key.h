@@ -95,6 +95,7 @@ std::vector<SensorKey> keys_of(std::type_identity<sim::MagnetometerModel>);
 std::vector<SensorKey> keys_of(std::type_identity<sim::BarometerModel>);
 std::vector<SensorKey> keys_of(std::type_identity<sim::OdometryModel>);
 std::vector<SensorKey> keys_of(std::type_identity<sim::ScanModel>);
+std::vector<SensorKey> keys_of(std::type_identity<sim::JointStateModel>);
 
 /// Sets what follows from other values, and checks what the values are together.
 /// @throws Error(kBadFile)

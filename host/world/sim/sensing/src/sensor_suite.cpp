@@ -1,6 +1,7 @@
 #include "ahead_drawer.h"
 #include "image_maker.h"
 #include "sensors/imu.h"
+#include "sensors/joint_state.h"
 #include "sensors/navigation.h"
 #include "sensors/range.h"
 #include "sensors/scan.h"
@@ -75,6 +76,10 @@ uav::Sample SensorSuite::measure(const Snapshot& snapshot, std::size_t uav, std:
               },
               [&](const OdometryModel& odometry) -> uav::Sample {
                 return measure_odometry(odometry, truth(), key);
+              },
+              [&](const JointStateModel& joints) -> uav::Sample {
+                return measure_joint_state(joints, world_.uavs[uav].joints,
+                                           layout_.angles_of(snapshot.state, uav), key);
               }},
       mounted.model);
 }

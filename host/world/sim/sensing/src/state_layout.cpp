@@ -81,6 +81,12 @@ uav::Pose StateLayout::past_pose_of(const std::vector<double>& state, std::size_
   return read_pose(state.data() + past_at() + row * row_size() + body * kPoseSize);
 }
 
+std::span<const double> StateLayout::angles_of(const std::vector<double>& state,
+                                               std::size_t uav) const {
+  return std::span(state).subspan(motion_at(uavs_) + first_joint_[uav],
+                                  first_joint_[uav + 1] - first_joint_[uav]);
+}
+
 uav::Pose StateLayout::turned_pose(const std::vector<double>& state, const World& world,
                                    const TurnedPart& part, const uav::Pose& X_B0,
                                    std::size_t steps_ago) const {

@@ -191,7 +191,8 @@ enum {
   TETHER_MAGNETOMETER = 7,         ///< magnetometer
   TETHER_BAROMETER = 8,            ///< barometer
   TETHER_ODOMETRY = 9,             ///< estimate of pose and velocity
-  TETHER_SCAN = 10                 ///< lidar
+  TETHER_SCAN = 10,                ///< lidar
+  TETHER_JOINT_STATE = 11          ///< angles of the UAV's joints
 };
 
 /// Shape of an anchor: TETHER_BOX, TETHER_CYLINDER, TETHER_SPHERE.

@@ -231,31 +231,30 @@ class Vehicle {
   Result<ImuSample> read_imu(const char* sensor, Read read = Read::kNext) noexcept {
     return read_struct<ImuSample>(tether_read_imu, sensor, read);
   }
-  /// Reads a rangefinder.
-  /// @param sensor  its name  @param read  which measurement  @return as tether_read_range()
+  /// Reads a rangefinder. @copydetails read_imu
   Result<RangeSample> read_range(const char* sensor, Read read = Read::kNext) noexcept {
     return read_struct<RangeSample>(tether_read_range, sensor, read);
   }
-  /// Reads a receiver of satellite navigation.
-  /// @param sensor  its name  @param read  which measurement  @return as tether_read_navsat()
+  /// Reads a receiver of satellite navigation. @copydetails read_imu
   Result<NavSatSample> read_navsat(const char* sensor, Read read = Read::kNext) noexcept {
     return read_struct<NavSatSample>(tether_read_navsat, sensor, read);
   }
-  /// Reads a magnetometer.
-  /// @param sensor  its name  @param read  which measurement  @return as tether_read_magnetometer()
+  /// Reads a magnetometer. @copydetails read_imu
   Result<MagnetometerSample> read_magnetometer(const char* sensor,
                                                Read read = Read::kNext) noexcept {
     return read_struct<MagnetometerSample>(tether_read_magnetometer, sensor, read);
   }
-  /// Reads a barometer.
-  /// @param sensor  its name  @param read  which measurement  @return as tether_read_barometer()
+  /// Reads a barometer. @copydetails read_imu
   Result<BarometerSample> read_barometer(const char* sensor, Read read = Read::kNext) noexcept {
     return read_struct<BarometerSample>(tether_read_barometer, sensor, read);
   }
-  /// Reads an estimate of pose and velocity.
-  /// @param sensor  its name  @param read  which measurement  @return as tether_read_odometry()
+  /// Reads an estimate of pose and velocity. @copydetails read_imu
   Result<OdometrySample> read_odometry(const char* sensor, Read read = Read::kNext) noexcept {
     return read_struct<OdometrySample>(tether_read_odometry, sensor, read);
+  }
+  /// Reads the angles of all joints. @copydetails read_imu
+  Result<JointStateSample> read_joint_state(const char* sensor, Read read = Read::kNext) noexcept {
+    return read_struct<JointStateSample>(tether_read_joint_state, sensor, read);
   }
   /// Reads a lidar into the caller's memory.
   /// @param sensor  its name  @param[out] ranges_m  the distances  @param capacity  of them
@@ -326,6 +325,12 @@ class Vehicle {
   Result<Subscription> subscribe_odometry(const char* sensor, OnSample on_sample) noexcept {
     return subscribe_by<const OdometrySample&, OdometrySample>(tether_subscribe_odometry, sensor,
                                                                std::move(on_sample));
+  }
+  /// Delivers the angles of all joints. @copydetails subscribe_imu
+  template <class OnSample>
+  Result<Subscription> subscribe_joint_state(const char* sensor, OnSample on_sample) noexcept {
+    return subscribe_by<const JointStateSample&, JointStateSample>(tether_subscribe_joint_state,
+                                                                   sensor, std::move(on_sample));
   }
   /// Delivers the scans of a lidar, in a thread of the library. Needs tether-exec.
   /// @param sensor  its name  @param on_scan  is called as `on_scan(const Scan&)`; must not throw

@@ -8,9 +8,10 @@ extern "C" {
 #endif
 /// @endcond
 
-/// @defgroup c_navigation Navigation and lidars
+/// @defgroup c_navigation Navigation, lidars and joints
 /// @ingroup c_api
-/// Sensors that say where the UAV is, and lidars. Their reads follow the rules of @ref c_reading.
+/// Sensors that say where the UAV is, lidars, and the angles of joints. Their reads follow the
+/// rules of @ref c_reading.
 /// @{
 
 /// One measurement of a receiver of satellite navigation. May grow.
@@ -74,6 +75,20 @@ typedef struct tether_odometry_sample {
 tether_status tether_read_odometry(tether_vehicle* vehicle, const char* sensor,
                                    tether_read_mode mode, tether_odometry_sample* out,
                                    size_t size) TETHER_NOEXCEPT;
+
+/// The angles of the UAV's joints. May grow.
+typedef struct tether_joint_state_sample {
+  int64_t sampled_at_ns;  ///< ST [ns]
+  uint64_t index;         ///< number of the measurement of this sensor
+  uint32_t joints;        ///< how many angles there are, as tether_joint_count()
+  uint32_t reserved;      ///< 0
+  double angles_rad[4];   ///< in the order of tether_get_joint()
+} tether_joint_state_sample;
+
+/// Reads the angles of all joints. @copydetails tether_read_imu
+tether_status tether_read_joint_state(tether_vehicle* vehicle, const char* sensor,
+                                      tether_read_mode mode, tether_joint_state_sample* out,
+                                      size_t size) TETHER_NOEXCEPT;
 
 /// Where the rays of a lidar point. Ray (row, column) is number row x columns + column. May grow.
 typedef struct tether_scan_model {

@@ -35,6 +35,8 @@ typedef void (*tether_on_magnetometer)(const tether_magnetometer_sample* sample,
 typedef void (*tether_on_barometer)(const tether_barometer_sample* sample, void* user);
 /// Receives a sample. @param sample  valid until the return  @param user  as subscribed
 typedef void (*tether_on_odometry)(const tether_odometry_sample* sample, void* user);
+/// Receives a sample. @param sample  valid until the return  @param user  as subscribed
+typedef void (*tether_on_joint_state)(const tether_joint_state_sample* sample, void* user);
 /// Receives a scan. @param scan  valid until the return  @param user  as subscribed
 typedef void (*tether_on_scan)(const tether_scan* scan, void* user);
 
@@ -75,6 +77,10 @@ tether_status tether_subscribe_barometer(tether_vehicle* vehicle, const char* se
 tether_status tether_subscribe_odometry(tether_vehicle* vehicle, const char* sensor,
                                         tether_on_odometry on_sample, void* user,
                                         tether_subscription** out) TETHER_NOEXCEPT;
+/// Subscribes to the angles of all joints. @copydetails tether_subscribe_imu
+tether_status tether_subscribe_joint_state(tether_vehicle* vehicle, const char* sensor,
+                                           tether_on_joint_state on_sample, void* user,
+                                           tether_subscription** out) TETHER_NOEXCEPT;
 /// Subscribes to a lidar.
 /// @param vehicle  the UAV  @param sensor  name of a periodic lidar
 /// @param on_scan  is called with each scan  @param user  is passed to it; may be NULL

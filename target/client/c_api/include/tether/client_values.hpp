@@ -161,6 +161,7 @@ enum class SensorKind : std::int32_t {
   kBarometer = TETHER_BAROMETER,                     ///< barometer
   kOdometry = TETHER_ODOMETRY,                       ///< estimate of pose and velocity
   kScan = TETHER_SCAN,                               ///< lidar
+  kJointState = TETHER_JOINT_STATE,                  ///< angles of the UAV's joints
 };
 /// Shape of an anchor.
 enum class AnchorShape : std::int32_t {
@@ -332,6 +333,7 @@ using NavSatSample = tether_navsat_sample;              ///< measurement of a re
 using MagnetometerSample = tether_magnetometer_sample;  ///< measurement of a magnetometer
 using BarometerSample = tether_barometer_sample;        ///< measurement of a barometer
 using OdometrySample = tether_odometry_sample;          ///< estimate of pose and velocity
+using JointStateSample = tether_joint_state_sample;     ///< angles of all joints
 using Setpoint = tether_setpoint;                       ///< any command
 using Joint = tether_joint;                             ///< what turns a part of the UAV
 using FlightLimits = tether_flight_limits;              ///< what a UAV can be commanded

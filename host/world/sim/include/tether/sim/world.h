@@ -237,13 +237,18 @@ struct ScanModel {
   double dropout_probability = 0.0;  ///< of a ray, which then reads +inf
 };
 
+/// The angles of all joints of a UAV.
+struct JointStateModel {
+  Noise angle_rad;  ///< of each joint
+};
+
 struct Sensor {
   std::string name;
   uav::Pose X_BS;               ///< in the UAV's body frame, while its joints are at 0
   double update_rate_hz = 0.0;  ///< SDF's <update_rate>; 0: none given
   /// In the order of uav::SensorKind.
   std::variant<CameraModel, ImuModel, RangeModel, NavSatModel, MagnetometerModel, BarometerModel,
-               OdometryModel, ScanModel>
+               OdometryModel, ScanModel, JointStateModel>
       model;
   FileLocation declared_at{};  ///< in its SDF file; empty: in none
   uav::DriverModel driver{};   ///< how its samples are stamped and delivered

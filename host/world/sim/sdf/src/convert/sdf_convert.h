@@ -59,6 +59,8 @@ Light read_light(const SdfSource& source, const sdf::Light& light, const uav::Po
 std::optional<Sensor> read_sensor(const SdfSource& source, const sdf::Sensor& sensor,
                                   const uav::Pose& X_BL, const WarningSink& warn);
 
+/// Adds the sensor of the joints, if there are any.
+void add_joint_state(const SdfSource& source, const sdf::ElementPtr& model, Uav& uav);
 /// Adds the sensor that the model's odometry plugin stands for, if it has one.
 void add_odometry(const SdfSource& source, const sdf::ElementPtr& model, Uav& uav);
 

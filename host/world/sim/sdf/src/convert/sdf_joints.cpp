@@ -1,5 +1,6 @@
 #include "convert/sdf_convert.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -30,6 +31,12 @@ std::optional<uav::Joint> read_joint(const SdfSource& source, const sdf::Joint& 
 }
 
 }  // namespace
+
+void add_joint_state(const SdfSource& source, const sdf::ElementPtr& model, Uav& uav) {
+  constexpr const char* kName = "joint_state";
+  if (uav.joints.empty() || std::ranges::count(uav.sensors, kName, &Sensor::name) > 0) return;
+  uav.sensors.push_back({kName, {}, 0.0, JointStateModel{}, source.where(model)});
+}
 
 Joints read_joints(const SdfSource& source, const sdf::Model& model, const std::string& body,
                    const uav::Pose& X_BM, const std::set<std::string>& of_rotors) {

@@ -230,6 +230,7 @@ Uav read_uav(const SdfSource& source, double gravity_m_s2, const WarningSink& wa
     add_links(source, *model, *body.link, warn, uav);
   }
   add_odometry(source, model->Element(), uav);
+  add_joint_state(source, model->Element(), uav);
   warn_of_moving_joints(source, *model, uav, of_rotors, warn);
   check_sensor_names(source, model->Element(), uav);
   return uav;

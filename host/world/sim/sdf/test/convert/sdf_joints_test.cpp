@@ -70,6 +70,13 @@ TEST_F(SdfJoints, CarryPartsWhoseMassJoinsTheBody) {
             1e-12);
 }
 
+TEST_F(SdfJoints, HaveASensorOfTheirAngles) {
+  const Uav uav = read(gimbal());
+  EXPECT_EQ(uav.sensors.back().name, "joint_state");
+  EXPECT_EQ(uav.sensors.back().kind(), uav::SensorKind::kJointState);
+  EXPECT_EQ(uav.sensors.back().update_rate_hz, 0.0);
+}
+
 TEST_F(SdfJoints, OfOtherKindsAreWarnedOfAndTheirLinksLeftOut) {
   const std::string sensors = gimbal(R"(
     <link name='wheel'/><joint name='axle' type='revolute'><parent>body</parent><child>wheel</child>
@@ -90,7 +97,7 @@ TEST_F(SdfJoints, TurnNothingThatMeasuresMotion) {
       with(gimbal(), "<sensor name='nose2' type='ray'>",
            "<sensor name='imu2' type='imu'/><sensor name='nose2' type='ray'>");
   EXPECT_THAT(warnings(model), ElementsAre(HasSubstr("sensor 'imu2'")));
-  EXPECT_THAT(read(model).sensors, SizeIs(4));
+  EXPECT_THAT(read(model).sensors, SizeIs(5));
 }
 
 }  // namespace

@@ -115,7 +115,7 @@ TEST_F(SdfMotors, LeaveJointsThatProgramsTurn) {
   EXPECT_DOUBLE_EQ(uav.airframe.mass_kg, 2.1);
   ASSERT_EQ(uav.joints.size(), 1u);
   EXPECT_EQ(uav.joints[0].name, "tilt");
-  ASSERT_EQ(uav.sensors.size(), 2u);
+  ASSERT_EQ(uav.sensors.size(), 3u) << "with that of the joints";
   EXPECT_EQ(uav.sensors[0].joints, 0u) << uav.sensors[0].name;
   EXPECT_EQ(uav.sensors[1].joints, 1u) << uav.sensors[1].name;
   EXPECT_LT(norm(uav.joints[0].p_BJ - uav.sensors[1].X_BS.p), 1e-12);

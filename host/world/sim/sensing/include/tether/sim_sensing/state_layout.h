@@ -48,6 +48,8 @@ class StateLayout {
 
   uav::Pose pose_of(const std::vector<double>& state, std::size_t body) const;
   BodyMotion motion_of(const std::vector<double>& state, std::size_t uav) const;
+  /// Of all joints of a UAV, from the body outwards.
+  std::span<const double> angles_of(const std::vector<double>& state, std::size_t uav) const;
   /// Where a body was so many steps before the capture. @pre within the longest shutter.
   uav::Pose past_pose_of(const std::vector<double>& state, std::size_t body,
                          std::size_t steps_ago) const;

@@ -119,6 +119,7 @@ inline World world_with_joint(std::optional<double> mounted_rad) {
       uav.sensors[sensor].joints = 1;
   }
   if (!mounted_rad) uav.joints = joints;
+  uav.sensors.push_back({"joint_state", {}, 0.0, JointStateModel{}});
   return world;
 }
 
@@ -133,6 +134,10 @@ TEST_P(SimulatorContract, JointsTurnSensorsAtTheirRateAndLeaveTheFlight) {
   EXPECT_EQ(turning->ground_truth(0).joints_rad, std::vector{0.0});
   turning->advance_to(at(std::chrono::milliseconds(100)));
   EXPECT_NEAR(turning->ground_truth(0).joints_rad.at(0), 0.2, 1e-9);
+  const std::size_t joint_state = turning->world().uavs[0].sensors.size() - 1;
+  EXPECT_EQ(measure_now<uav::JointStateSample>(*turning, joint_state).angles_rad,
+            turning->ground_truth(0).joints_rad);
+  EXPECT_TRUE(measure_now<uav::JointStateSample>(*mounted, joint_state).angles_rad.empty());
   for (const auto& simulator : {turning, mounted})
     simulator->advance_to(at(std::chrono::milliseconds(300)));
   EXPECT_EQ(turning->ground_truth(0).joints_rad, std::vector{0.4});
