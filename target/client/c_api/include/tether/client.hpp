@@ -282,7 +282,7 @@ class Vehicle {
   /// @return as tether_subscribe_camera()
   template <class OnImage>
   Result<Subscription> subscribe_camera(const char* sensor, OnImage on_image) noexcept {
-    return subscribe_by<ImageView, tether_image>(tether_subscribe_camera, sensor,
+    return subscribe_by<tether_image, ImageView>(tether_subscribe_camera, sensor,
                                                  std::move(on_image));
   }
   /// Delivers the measurements of an IMU.
@@ -293,51 +293,46 @@ class Vehicle {
   /// @return as tether_subscribe_imu()
   template <class OnSample>
   Result<Subscription> subscribe_imu(const char* sensor, OnSample on_sample) noexcept {
-    return subscribe_by<const ImuSample&, ImuSample>(tether_subscribe_imu, sensor,
-                                                     std::move(on_sample));
+    return subscribe_by<ImuSample>(tether_subscribe_imu, sensor, std::move(on_sample));
   }
   /// Delivers the measurements of a rangefinder. @copydetails subscribe_imu
   template <class OnSample>
   Result<Subscription> subscribe_range(const char* sensor, OnSample on_sample) noexcept {
-    return subscribe_by<const RangeSample&, RangeSample>(tether_subscribe_range, sensor,
-                                                         std::move(on_sample));
+    return subscribe_by<RangeSample>(tether_subscribe_range, sensor, std::move(on_sample));
   }
   /// Delivers the measurements of a receiver of satellite navigation. @copydetails subscribe_imu
   template <class OnSample>
   Result<Subscription> subscribe_navsat(const char* sensor, OnSample on_sample) noexcept {
-    return subscribe_by<const NavSatSample&, NavSatSample>(tether_subscribe_navsat, sensor,
-                                                           std::move(on_sample));
+    return subscribe_by<NavSatSample>(tether_subscribe_navsat, sensor, std::move(on_sample));
   }
   /// Delivers the measurements of a magnetometer. @copydetails subscribe_imu
   template <class OnSample>
   Result<Subscription> subscribe_magnetometer(const char* sensor, OnSample on_sample) noexcept {
-    return subscribe_by<const MagnetometerSample&, MagnetometerSample>(
-        tether_subscribe_magnetometer, sensor, std::move(on_sample));
+    return subscribe_by<MagnetometerSample>(tether_subscribe_magnetometer, sensor,
+                                            std::move(on_sample));
   }
   /// Delivers the measurements of a barometer. @copydetails subscribe_imu
   template <class OnSample>
   Result<Subscription> subscribe_barometer(const char* sensor, OnSample on_sample) noexcept {
-    return subscribe_by<const BarometerSample&, BarometerSample>(tether_subscribe_barometer, sensor,
-                                                                 std::move(on_sample));
+    return subscribe_by<BarometerSample>(tether_subscribe_barometer, sensor, std::move(on_sample));
   }
   /// Delivers the measurements of a source of odometry. @copydetails subscribe_imu
   template <class OnSample>
   Result<Subscription> subscribe_odometry(const char* sensor, OnSample on_sample) noexcept {
-    return subscribe_by<const OdometrySample&, OdometrySample>(tether_subscribe_odometry, sensor,
-                                                               std::move(on_sample));
+    return subscribe_by<OdometrySample>(tether_subscribe_odometry, sensor, std::move(on_sample));
   }
   /// Delivers the angles of all joints. @copydetails subscribe_imu
   template <class OnSample>
   Result<Subscription> subscribe_joint_state(const char* sensor, OnSample on_sample) noexcept {
-    return subscribe_by<const JointStateSample&, JointStateSample>(tether_subscribe_joint_state,
-                                                                   sensor, std::move(on_sample));
+    return subscribe_by<JointStateSample>(tether_subscribe_joint_state, sensor,
+                                          std::move(on_sample));
   }
   /// Delivers the scans of a lidar, in a thread of the library. Needs tether-exec.
   /// @param sensor  its name  @param on_scan  is called as `on_scan(const Scan&)`; must not throw
   /// @return as tether_subscribe_scan()
   template <class OnScan>
   Result<Subscription> subscribe_scan(const char* sensor, OnScan on_scan) noexcept {
-    return subscribe_by<const Scan&, Scan>(tether_subscribe_scan, sensor, std::move(on_scan));
+    return subscribe_by<Scan>(tether_subscribe_scan, sensor, std::move(on_scan));
   }
 
   /// Flies with this velocity until the next command.
@@ -440,7 +435,7 @@ class Vehicle {
     return *sample;
   }
 
-  template <class Shown, class C, class Subscribe, class Function>
+  template <class C, class Shown = const C&, class Subscribe, class Function>
   Result<Subscription> subscribe_by(Subscribe subscribe, const char* sensor,
                                     Function&& function) noexcept {
     using HeldFunction = Held<std::decay_t<Function>>;
