@@ -17,11 +17,11 @@ namespace {
 
 using Change = decltype(Quantity::change);
 
-constexpr toml::Range kAny{.min = -1e6, .max = 1e6};
-constexpr toml::Range kFactor{.min = 0.0, .max = 1e6, .above_min = true};
+constexpr toml::Range kAnyNumber{.min = -1e6, .max = 1e6};
+constexpr toml::Range kAnyFactor{.min = 0.0, .max = 1e6, .above_min = true};
 constexpr toml::Range kTurn_deg{.min = -360.0, .max = 360.0};
-constexpr toml::Range kDelay_s{.min = 0.0, .max = kLongestRun_s};
-constexpr toml::Range kMounting_m{.min = -100.0, .max = 100.0};
+constexpr toml::Range kPathDelay_s{.min = 0.0, .max = kLongestRun_s};
+constexpr toml::Range kSensorShift_m{.min = -100.0, .max = 100.0};
 
 template <auto Member>
 constexpr Change kMoveUav = [](sim::World&, sim::Uav* uav, sim::Model*, sim::Sensor*,
@@ -86,43 +86,43 @@ Vec3 turned_hue(const Vec3& rgb, double hue_deg) {
 }
 
 constexpr std::array kQuantities = {
-    Quantity{"start_x_m", Part::kStart, kAny, kMoveUav<&Vec3::x>},
-    Quantity{"start_y_m", Part::kStart, kAny, kMoveUav<&Vec3::y>},
-    Quantity{"start_z_m", Part::kStart, kAny, kMoveUav<&Vec3::z>},
+    Quantity{"start_x_m", Part::kStart, kAnyNumber, kMoveUav<&Vec3::x>},
+    Quantity{"start_y_m", Part::kStart, kAnyNumber, kMoveUav<&Vec3::y>},
+    Quantity{"start_z_m", Part::kStart, kAnyNumber, kMoveUav<&Vec3::z>},
     Quantity{"start_yaw_deg", Part::kStart, kTurn_deg,
              [](sim::World&, sim::Uav* uav, sim::Model*, sim::Sensor*, double yaw_deg) {
                uav->X_WB.q = turn(0.0, 0.0, yaw_deg) * uav->X_WB.q;
              }},
-    Quantity{"mass_factor", Part::kUav, kFactor,
+    Quantity{"mass_factor", Part::kUav, kAnyFactor,
              [](sim::World&, sim::Uav* uav, sim::Model*, sim::Sensor*, double factor) {
                scale_mass(*uav, factor * uav->airframe.mass_kg);
              }},
-    Quantity{"payload_kg", Part::kUav, kAny,
+    Quantity{"payload_kg", Part::kUav, kAnyNumber,
              [](sim::World&, sim::Uav* uav, sim::Model*, sim::Sensor*, double payload_kg) {
                scale_mass(*uav, uav->airframe.mass_kg + payload_kg);
              }},
-    Quantity{"thrust_factor", Part::kUav, kFactor,
+    Quantity{"thrust_factor", Part::kUav, kAnyFactor,
              [](sim::World&, sim::Uav* uav, sim::Model*, sim::Sensor*, double factor) {
                uav->airframe.thrust_coefficient *= factor;
              }},
-    Quantity{"drag_factor", Part::kUav, kFactor,
+    Quantity{"drag_factor", Part::kUav, kAnyFactor,
              [](sim::World&, sim::Uav* uav, sim::Model*, sim::Sensor*, double factor) {
                uav->airframe.drag_coefficient *= factor;
                uav->airframe.linear_drag_N_s_m *= factor;
              }},
-    Quantity{"motor_lag_factor", Part::kUav, kFactor,
+    Quantity{"motor_lag_factor", Part::kUav, kAnyFactor,
              [](sim::World&, sim::Uav* uav, sim::Model*, sim::Sensor*, double factor) {
                uav->airframe.time_constant_up_s *= factor;
                uav->airframe.time_constant_down_s *= factor;
              }},
-    Quantity{"model_x_m", Part::kModel, kAny, kMoveModel<&Vec3::x>},
-    Quantity{"model_y_m", Part::kModel, kAny, kMoveModel<&Vec3::y>},
-    Quantity{"model_z_m", Part::kModel, kAny, kMoveModel<&Vec3::z>},
+    Quantity{"model_x_m", Part::kModel, kAnyNumber, kMoveModel<&Vec3::x>},
+    Quantity{"model_y_m", Part::kModel, kAnyNumber, kMoveModel<&Vec3::y>},
+    Quantity{"model_z_m", Part::kModel, kAnyNumber, kMoveModel<&Vec3::z>},
     Quantity{"model_yaw_deg", Part::kModel, kTurn_deg,
              [](sim::World&, sim::Uav*, sim::Model* model, sim::Sensor*, double yaw_deg) {
                model->X_WM.q = turn(0.0, 0.0, yaw_deg) * model->X_WM.q;
              }},
-    Quantity{"model_brightness_factor", Part::kModel, kFactor,
+    Quantity{"model_brightness_factor", Part::kModel, kAnyFactor,
              [](sim::World&, sim::Uav*, sim::Model* model, sim::Sensor*, double factor) {
                for_each_colour(*model, [&](Vec3& rgb) { rgb = factor * rgb; });
              }},
@@ -130,22 +130,22 @@ constexpr std::array kQuantities = {
              [](sim::World&, sim::Uav*, sim::Model* model, sim::Sensor*, double hue_deg) {
                for_each_colour(*model, [&](Vec3& rgb) { rgb = turned_hue(rgb, hue_deg); });
              }},
-    Quantity{"model_saturation_factor", Part::kModel, kFactor,
+    Quantity{"model_saturation_factor", Part::kModel, kAnyFactor,
              [](sim::World&, sim::Uav*, sim::Model* model, sim::Sensor*, double factor) {
                for_each_colour(*model, [&](Vec3& rgb) {
                  rgb = within_colours(grey_of(rgb) + factor * (rgb - grey_of(rgb)));
                });
              }},
-    Quantity{"path_delay_s", Part::kPath, kDelay_s,
+    Quantity{"path_delay_s", Part::kPath, kPathDelay_s,
              [](sim::World&, sim::Uav*, sim::Model* model, sim::Sensor*, double delay_s) {
                model->path->delay += duration_from_seconds(delay_s);
              }},
-    Quantity{"path_time_factor", Part::kPath, kFactor,
+    Quantity{"path_time_factor", Part::kPath, kAnyFactor,
              [](sim::World&, sim::Uav*, sim::Model* model, sim::Sensor*, double factor) {
                for (uav::Waypoint& point : model->path->waypoints)
                  point.at = duration_from_seconds(factor * to_seconds(point.at));
              }},
-    Quantity{"wind_factor", Part::kWind, kFactor,
+    Quantity{"wind_factor", Part::kWind, kAnyFactor,
              [](sim::World& world, sim::Uav*, sim::Model*, sim::Sensor*, double factor) {
                world.wind.v_WA_m_s = factor * world.wind.v_WA_m_s;
              }},
@@ -153,26 +153,26 @@ constexpr std::array kQuantities = {
              [](sim::World& world, sim::Uav*, sim::Model*, sim::Sensor*, double yaw_deg) {
                world.wind.v_WA_m_s = rotate(turn(0.0, 0.0, yaw_deg), world.wind.v_WA_m_s);
              }},
-    Quantity{"turbulence_factor", Part::kWind, kFactor,
+    Quantity{"turbulence_factor", Part::kWind, kAnyFactor,
              [](sim::World& world, sim::Uav*, sim::Model*, sim::Sensor*, double factor) {
                world.wind.turbulence *= factor;
              }},
-    Quantity{"light_factor", Part::kWorld, kFactor,
+    Quantity{"light_factor", Part::kWorld, kAnyFactor,
              [](sim::World& world, sim::Uav*, sim::Model*, sim::Sensor*, double factor) {
                for_each_light(world, [&](Vec3& rgb) { rgb = factor * rgb; });
              }},
-    Quantity{"light_warmth_factor", Part::kWorld, kFactor,
+    Quantity{"light_warmth_factor", Part::kWorld, kAnyFactor,
              [](sim::World& world, sim::Uav*, sim::Model*, sim::Sensor*, double factor) {
                const double red = std::sqrt(factor);
                for_each_light(world, [&](Vec3& rgb) { rgb = {red * rgb.x, rgb.y, rgb.z / red}; });
              }},
-    Quantity{"friction_factor", Part::kWorld, kFactor,
+    Quantity{"friction_factor", Part::kWorld, kAnyFactor,
              [](sim::World& world, sim::Uav*, sim::Model*, sim::Sensor*, double factor) {
                for_each_collision(world, [&](sim::Collision& c) { c.friction *= factor; });
              }},
-    Quantity{"sensor_x_m", Part::kSensor, kMounting_m, kMoveSensor<&Vec3::x>},
-    Quantity{"sensor_y_m", Part::kSensor, kMounting_m, kMoveSensor<&Vec3::y>},
-    Quantity{"sensor_z_m", Part::kSensor, kMounting_m, kMoveSensor<&Vec3::z>},
+    Quantity{"sensor_x_m", Part::kSensor, kSensorShift_m, kMoveSensor<&Vec3::x>},
+    Quantity{"sensor_y_m", Part::kSensor, kSensorShift_m, kMoveSensor<&Vec3::y>},
+    Quantity{"sensor_z_m", Part::kSensor, kSensorShift_m, kMoveSensor<&Vec3::z>},
     Quantity{"sensor_roll_deg", Part::kSensor, kTurn_deg,
              [](sim::World&, sim::Uav*, sim::Model*, sim::Sensor* sensor, double roll_deg) {
                sensor->X_BS.q = sensor->X_BS.q * turn(roll_deg, 0.0, 0.0);
