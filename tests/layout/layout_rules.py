@@ -249,8 +249,8 @@ def check_tests(sources, exceptions):
 
 
 def check_leftovers(texts):
-    """`texts`: {path: text} of all files that people read."""
-    marks = re.compile(r"\b(TO" + r"DO|FIX" + r"ME|XX" + r"X|HA" + r"CK)\b")
+    """`texts`: {path: text} of all files that people read. Also what a merge leaves behind."""
+    marks = re.compile(r"\b(TO" + r"DO|FIX" + r"ME|XX" + r"X|HA" + r"CK)\b|^(<{7}|>{7}) .*", re.M)
     return [f"{path}:{text.count(chr(10), 0, m.start()) + 1}: {m[0]}" for path, text in texts.items()
             for m in marks.finditer(text)]
 

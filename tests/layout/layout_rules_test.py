@@ -120,6 +120,7 @@ class Planted(unittest.TestCase):
 
     def test_documents(self):
         self.assertEqual(len(check_leftovers({"a": "\nTO" + "DO: later"})), 1)
+        self.assertEqual(len(check_leftovers({"a.md": f"a\n{'<' * 7} HEAD\nb\n{'=' * 7}\nc\n{'>' * 7} f00d (it)\n"})), 2)
         links = {"docs/a.md": "[a](b.md#x) [c](https://d) <img src=\"e.png\">"}
         self.assertEqual(check_links(links, lambda path: path.as_posix() == "docs/b.md"), ["docs/a.md:1: no file e.png"])
         self.assertEqual(len(check_decisions({"docs/adr/0001-a.md": "Status: a ## Context ## Decision ## Consequences"})), 2)
