@@ -32,4 +32,7 @@ inline Agent* agent() {
 /// What a system call for a device comes to, −1 with errno; none: it is for something else.
 std::optional<long> device_call(long number, const long (&arguments)[6]);
 
+/// What a system call for the time or a sleep comes to, as above.
+std::optional<long> time_call(long number, const long (&arguments)[6]);
+
 }  // namespace tether::as_is

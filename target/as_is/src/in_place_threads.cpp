@@ -212,6 +212,7 @@ TETHER_IN_PLACE long syscall(long number, ...) {
   for (long& argument : a) argument = va_arg(list, long);
   va_end(list);
   if (const auto result = device_call(number, a)) return *result;
+  if (const auto result = time_call(number, a)) return *result;
   Agent* const agent = number == SYS_futex ? tether::as_is::agent() : nullptr;
   if (agent == nullptr || a[3] == 0 || !is_timed_wait(a[1]))
     return TETHER_REAL(syscall)(number, a[0], a[1], a[2], a[3], a[4], a[5]);

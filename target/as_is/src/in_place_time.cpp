@@ -4,7 +4,9 @@
 #include "in_place.h"
 
 #include <cerrno>
+#include <cstring>
 
+#include <sys/syscall.h>
 #include <sys/time.h>
 #include <unistd.h>
 
@@ -88,3 +90,42 @@ TETHER_IN_PLACE unsigned sleep(unsigned duration_s) {
   nanosleep(&time, nullptr);
   return 0;
 }
+
+namespace tether::as_is {
+namespace {
+
+template <class T>
+T* pointer(long argument) {
+  T* result = nullptr;
+  std::memcpy(static_cast<void*>(&result), &argument, sizeof argument);
+  return result;
+}
+
+}  // namespace
+
+std::optional<long> time_call(long number, const long (&a)[6]) {
+  if (agent() == nullptr) return std::nullopt;
+  const auto clock = static_cast<clockid_t>(a[0]);
+  switch (number) {
+    case SYS_clock_gettime:
+      return ::clock_gettime(clock, pointer<timespec>(a[1]));
+    case SYS_gettimeofday:
+      return ::gettimeofday(pointer<timeval>(a[0]), pointer<void>(a[1]));
+#ifdef SYS_time
+    case SYS_time:
+      return ::time(pointer<time_t>(a[0]));
+#endif
+    case SYS_nanosleep:
+      return ::nanosleep(pointer<timespec>(a[0]), pointer<timespec>(a[1]));
+    case SYS_clock_nanosleep: {
+      const int wrong = ::clock_nanosleep(clock, static_cast<int>(a[1]), pointer<timespec>(a[2]),
+                                          pointer<timespec>(a[3]));
+      if (wrong != 0) errno = wrong;
+      return wrong == 0 ? 0 : -1;
+    }
+    default:
+      return std::nullopt;
+  }
+}
+
+}  // namespace tether::as_is

@@ -18,6 +18,7 @@
 #include <sys/epoll.h>
 #include <sys/select.h>
 #include <sys/socket.h>
+#include <sys/syscall.h>
 #include <sys/timerfd.h>
 #include <unistd.h>
 
@@ -61,6 +62,16 @@ int main() {
       const timespec until = later(clock);
       clock_nanosleep(clock, TIMER_ABSTIME, &until, nullptr);
     });
+  take("syscall_sleep", [] {
+    const timespec until = later(CLOCK_MONOTONIC);
+    syscall(SYS_clock_nanosleep, CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
+  });
+  take("syscall_clock", [] {
+    const timespec until = later(CLOCK_MONOTONIC);
+    timespec now{};
+    while (now.tv_sec < until.tv_sec || (now.tv_sec == until.tv_sec && now.tv_nsec < until.tv_nsec))
+      syscall(SYS_clock_gettime, CLOCK_MONOTONIC, &now);
+  });
   take("poll", [] { poll(nullptr, 0, 20); });
   take("ppoll", [&] { ppoll(nullptr, 0, &duration, nullptr); });
   take("select", [] {
