@@ -74,6 +74,9 @@ std::string advice_on(const std::string& word) {
     if (word == option)
       return "The number of flights is `trials` of a campaign's file, and --max-trials of tether "
              "size.";
+  if (word == "--")
+    return "Only `tether run` takes a program after '--'. Other commands fly the scenario's file "
+           "that it leaves in its folder, `scenario.toml`.";
   return scenario::ShippedFiles::of_program(os::own_file()).what_is(word);
 }
 

@@ -49,6 +49,7 @@ TEST(CommandLine, NamesWhatIsWrongInOneLineWithTheHelpOfItsCommand) {
       {{"tether", "face_anchor"}, {"type: tether run face_anchor", "tether --help"}},
       {{"tether", "campaign", "x", "--flights", "9"}, {"`trials`", "tether campaign --help"}},
       {{"tether", "run"}, {"scenario", "tether run --help"}},
+      {{"tether", "campaign", "--", "ls"}, {"Only `tether run` takes a program", "scenario.toml"}},
       {{"tether", "run", "--"}, {"follows '--'", "tether run --help"}},
       {{"tether", "run", "x", "--", "ls"}, {"'x' is before '--'", "tether run --help"}},
       {{"tether", "run", "--time-limit", "0", "--", "ls"}, {"--time-limit", "0.1 to 604799"}},
