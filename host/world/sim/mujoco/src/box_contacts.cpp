@@ -4,9 +4,13 @@
 // sideways as soon as its hull was some millimetres deep, and the engine threw it out with 30 m/s.
 // Here the engine is given that part of the box only which is near the other shape.
 //
-// It also finds one point of contact only, so that what stands on a box rocks for ever, and an IMU
-// on it measures several m/s². Over a face that is wider than the other shape, a box is a half
-// space: there, the engine's functions for planes find all points.
+// A patch of a mesh (convex_patches.h) is thinner than what hits it, and the engine pushed that out
+// on either side. It is the plane of the side on which the other shape is, for those points of
+// contact that are nearer to that plane than to the patch's edge.
+//
+// The engine also finds one point of contact only, so that what stands on a box rocks for ever, and
+// an IMU on it measures several m/s². Over a face that is wider than the other shape, a box is a
+// half space: there, the engine's functions for planes find all points.
 
 #include "box_contacts.h"
 
@@ -124,12 +128,75 @@ int collide(const mjModel* model, const mjData* data, mjContact* contacts, int g
   return collide_convex(model, data, contacts, geom1, geom2, margin);
 }
 
+// Of a mesh that is a thin plate: the axis across it; −1: it is none.
+int axis_across(const mjModel& model, int mesh) {
+  constexpr mjtNum kThin_m = 0.007;
+  const mjtNum* const half = model.geom_size + 3 * mesh;
+  for (int i = 0; i < 3; ++i)
+    if (half[i] <= kThin_m && half[i] < half[(i + 1) % 3] && half[i] < half[(i + 2) % 3]) return i;
+  return -1;
+}
+
+// How far a point is from the edge of a thin plate; negative outside of it.
+mjtNum from_edge_m(const mjModel& model, const mjData& data, int geom, int axis,
+                   const mjtNum* p_W) {
+  const int mesh = model.geom_dataid[geom];
+  const float* const vertices = model.mesh_vert + 3 * model.mesh_vertadr[mesh];
+  mjtNum from_center_W[3], p[3];
+  mju_sub3(from_center_W, p_W, data.geom_xpos + 3 * geom);
+  mju_rotVecMatT(p, from_center_W, data.geom_xmat + 9 * geom);
+  mjtNum least = mjMAXVAL;
+  const int first = model.mesh_faceadr[mesh];
+  for (int face = first; face < first + model.mesh_facenum[mesh]; ++face) {
+    mjtNum corner[3][3], ab[3], ac[3], normal[3], from_corner[3];
+    for (int i = 0; i < 3; ++i)
+      for (int k = 0; k < 3; ++k) corner[i][k] = vertices[3 * model.mesh_face[3 * face + i] + k];
+    mju_sub3(ab, corner[1], corner[0]);
+    mju_sub3(ac, corner[2], corner[0]);
+    mju_cross(normal, ab, ac);
+    mju_normalize3(normal);
+    if (mju_abs(normal[axis]) > 0.5) continue;  // not a side
+    mju_sub3(from_corner, p, corner[0]);
+    least = mju_min(least, -mju_dot3(normal, from_corner));
+  }
+  return least;
+}
+
+int collide_mesh(const mjModel* model, const mjData* data, mjContact* contacts, int geom1,
+                 int geom2, mjtNum margin) {
+  // The first geom's type is never the greater one.
+  const int axis = axis_across(*model, geom2);
+  const mjfCollision on_plane = mjCOLLISIONFUNC[mjGEOM_PLANE][model->geom_type[geom1]];
+  if (axis >= 0 && on_plane != nullptr) {
+    mjtNum apart_W[3], p[3];
+    mju_sub3(apart_W, data->geom_xpos + 3 * geom1, data->geom_xpos + 3 * geom2);
+    mju_rotVecMatT(p, apart_W, data->geom_xmat + 9 * geom2);
+    const mjtNum side = p[axis] > 0 ? 1 : -1;
+    int found = 0;
+    {
+      const AsPlane plane(*data, geom2, model->geom_size + 3 * geom2, axis, side);
+      found = on_plane(model, data, contacts, geom2, geom1, margin);
+    }
+    const auto is_beside = [&](const mjContact& contact) {
+      return from_edge_m(*model, *data, geom2, axis, contact.pos) < -contact.dist;
+    };
+    found = static_cast<int>(std::remove_if(contacts, contacts + found, is_beside) - contacts);
+    for (int i = 0; i < found; ++i) mju_scl3(contacts[i].frame, contacts[i].frame, -1);
+    if (found > 0) return found;
+  }
+  const bool has_box = model->geom_type[geom1] == mjGEOM_BOX;
+  return (has_box ? collide : collide_convex)(model, data, contacts, geom1, geom2, margin);
+}
+
 bool install() {
   collide_convex = mjCOLLISIONFUNC[mjGEOM_CYLINDER][mjGEOM_BOX];
   for (int type = 0; type < mjNGEOMTYPES; ++type)
     for (mjfCollision* function :
          {&mjCOLLISIONFUNC[type][mjGEOM_BOX], &mjCOLLISIONFUNC[mjGEOM_BOX][type]})
       if (*function == collide_convex) *function = collide;
+  for (mjfCollision(&of_type)[mjNGEOMTYPES] : mjCOLLISIONFUNC)
+    if (of_type[mjGEOM_MESH] == collide_convex || of_type[mjGEOM_MESH] == collide)
+      of_type[mjGEOM_MESH] = collide_mesh;
   return true;
 }
 

@@ -6,7 +6,6 @@
 #include "collada_check.h"
 #include "conversions.h"
 #include "gltf_check.h"
-#include "mesh_pieces.h"
 #include "obj_check.h"
 
 #include <algorithm>
@@ -451,31 +450,24 @@ std::vector<MeshPart> MeshFiles::parts(const MeshGeometry& mesh, const WarningSi
   return parts;
 }
 
-const std::vector<std::vector<Vec3>>& MeshFiles::pieces_of(const MeshGeometry& any) const {
+const CollisionPieces& MeshFiles::pieces(const MeshGeometry& any) const {
   MeshGeometry mesh = any;
   mesh.piece.reset();
   const auto known = pieces_.find(key_of(mesh));
   if (known != pieces_.end()) return known->second;
-  return pieces_.emplace(key_of(mesh), connected_pieces(load(mesh, {}))).first->second;
-}
-
-std::size_t MeshFiles::pieces(const MeshGeometry& mesh) const {
-  return pieces_of(mesh).size();
+  return pieces_.emplace(key_of(mesh), collision_pieces(load(mesh, {}))).first->second;
 }
 
 std::vector<Vec3> MeshFiles::corners(const MeshGeometry& mesh) const {
   std::vector<Vec3> corners;
-  const std::vector<std::vector<Vec3>>& pieces = pieces_of(mesh);
+  const std::vector<std::vector<Vec3>>& pieces = this->pieces(mesh).corners;
   for (std::size_t i = 0; i < pieces.size(); ++i)
     if (!mesh.piece || *mesh.piece == i)
       corners.insert(corners.end(), pieces[i].begin(), pieces[i].end());
   if (corners.size() > kMaxHullCorners) {
     fail_mesh(mesh.file, "has more than 1,000,000 vertices, which is too many for a collision");
   }
-  const auto in_order = [](const Vec3& p) { return std::tuple{p.x, p.y, p.z}; };
-  std::ranges::sort(corners, {}, in_order);
-  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
-  return with_volume(corners);
+  return with_volume(distinct(std::move(corners)));
 }
 
 }  // namespace tether::sim

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "mesh_look.h"
+#include "mesh_pieces.h"
 #include "triangle_mesh.h"
 
 #include <filesystem>
@@ -46,18 +47,15 @@ class MeshFiles {
   /// @throws Error(kBadFile) as `load`, and for more than 1,000,000.
   std::vector<uav::Vec3> corners(const MeshGeometry& mesh) const;
 
-  /// How many pieces the mesh consists of, whose triangles have no corner at the same place: walls
-  /// of a house, for example. `MeshGeometry::piece` selects one for `corners`.
-  std::size_t pieces(const MeshGeometry& mesh) const;
+  /// The convex pieces of the mesh; `MeshGeometry::piece` selects one of them for `corners`.
+  const CollisionPieces& pieces(const MeshGeometry& mesh) const;
 
  private:
   struct Imported;
   const aiScene& imported(const MeshGeometry& mesh) const;
 
-  const std::vector<std::vector<uav::Vec3>>& pieces_of(const MeshGeometry& any) const;
-
   mutable std::map<std::filesystem::path, std::unique_ptr<Imported>> files_;
-  mutable std::map<MeshKey, std::vector<std::vector<uav::Vec3>>> pieces_;
+  mutable std::map<MeshKey, CollisionPieces> pieces_;
 };
 
 }  // namespace tether::sim

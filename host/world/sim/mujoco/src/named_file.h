@@ -10,7 +10,7 @@ namespace tether::sim {
 /// @throws Error(kBadFile) at that place, with the message and the subject of the one that `read`
 /// throws; that one itself if there is no place.
 template <class Read>
-auto read_named(const FileLocation& named_at, const Read& read) {
+decltype(auto) read_named(const FileLocation& named_at, const Read& read) {
   try {
     return read();
   } catch (const Error& e) {

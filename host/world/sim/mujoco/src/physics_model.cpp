@@ -33,7 +33,7 @@ class PhysicsXml {
       const std::string shape = describe(collision, X * collision.X_LC, is_static);
       if (shape.empty()) continue;
       append(R"(<geom {} contype="{}" conaffinity="1" friction="{} 0.005 0.0001"/>)", shape,
-             may_be_pushed ? 1 : 0, collision.friction);
+             may_be_pushed ? 1 : 0, std::min(collision.friction, kMostFriction));
     }
   }
 
@@ -64,6 +64,9 @@ class PhysicsXml {
 
  private:
   static constexpr int kMaxContacts = 500;
+  /// On a slope of 70° nothing slides. Of larger ones, the engine's contacts get soft: at 20, a UAV
+  /// sinks through the floor.
+  static constexpr double kMostFriction = 3.0;
 
   template <class... Args>
   void append(fmt::format_string<Args...> format, Args&&... args) {
@@ -122,12 +125,7 @@ class PhysicsXml {
   }
 
   std::string describe(const MeshGeometry& mesh, const Pose& X, const Collision& collision) {
-    if (mesh.piece.value_or(0) == 0)
-      warn_({Consequence::kBehavesDifferent,
-             {mesh.file.string()},
-             fmt::format("collision '{}'", collision.name),
-             mesh.piece ? "collides as the convex hull of each connected piece of its mesh"
-                        : "collides as the convex hull of its mesh"});
+    if (mesh.piece.value_or(0) == 0) warn_of_shape(mesh, collision);
     const auto [known, is_new] = meshes_.try_emplace(key_of(mesh), meshes_.size());
     const std::string name = fmt::format("m{}", known->second);
     if (is_new) {
@@ -138,6 +136,20 @@ class PhysicsXml {
       assets_ += fmt::format(R"(<mesh name="{}" vertex="{}"/>)", name, vertices);
     }
     return fmt::format(R"(type="mesh" {} mesh="{}")", place(X), name);
+  }
+
+  void warn_of_shape(const MeshGeometry& mesh, const Collision& collision) const {
+    constexpr double kAsWritten_m = 0.01;
+    const CollisionPieces& pieces = read_named(
+        mesh.named_at, [&]() -> const CollisionPieces& { return mesh_files_.pieces(mesh); });
+    const bool is_hull = !mesh.piece && (pieces.tolerance_m == 0.0 || pieces.corners.size() > 1);
+    if (!is_hull && pieces.tolerance_m <= kAsWritten_m) return;
+    warn_({Consequence::kBehavesDifferent,
+           {mesh.file.string()},
+           fmt::format("collision '{}'", collision.name),
+           is_hull ? "collides as the convex hull of its mesh"
+                   : fmt::format("collides as convex pieces that are up to {:g} m beside its mesh",
+                                 pieces.tolerance_m)});
   }
 
   const MeshFiles& mesh_files_;

@@ -48,15 +48,15 @@ class UsableMeshes {
   std::map<MeshKey, std::optional<std::string>> problems_;
 };
 
-constexpr std::size_t kMostPieces = 500;
-
-// 0: not a mesh, or one that cannot be read, which is refused later.
-std::size_t pieces_of(const Collision& collision, const MeshFiles& meshes) try {
+// None: not a mesh, or one that cannot be read, which is refused later.
+std::vector<std::vector<uav::Vec3>> pieces_of(const Collision& collision,
+                                              const MeshFiles& meshes) try {
   const auto* mesh = std::get_if<MeshGeometry>(&collision.geometry);
-  return mesh != nullptr ? meshes.pieces(*mesh) : 0;
+  if (mesh == nullptr) return {};
+  return meshes.pieces(*mesh).corners;
 } catch (const Error& error) {
   if (error.code() != ErrorCode::kBadFile) throw;
-  return 0;
+  return {};
 }
 
 }  // namespace
@@ -77,14 +77,16 @@ void split_collisions(World& world, const MeshFiles& meshes) {
     for (Link& link : model.links) {
       std::vector<Collision> all;
       for (const Collision& collision : link.collisions) {
-        const std::size_t pieces = pieces_of(collision, meshes);
-        if (pieces < 2 || pieces > kMostPieces) {
-          all.push_back(collision);
-          continue;
-        }
-        for (std::size_t i = 0; i < pieces; ++i) {
-          all.push_back(collision);
-          std::get<MeshGeometry>(all.back().geometry).piece = i;
+        const std::vector<std::vector<uav::Vec3>> pieces = pieces_of(collision, meshes);
+        if (pieces.empty()) all.push_back(collision);
+        for (std::size_t i = 0; i < pieces.size(); ++i) {
+          Collision& piece = all.emplace_back(collision);
+          if (const auto box = as_box(pieces[i])) {
+            piece.X_LC = piece.X_LC * box->X_MB;
+            piece.geometry = BoxGeometry{box->size_m};
+          } else if (pieces.size() > 1) {
+            std::get<MeshGeometry>(piece.geometry).piece = i;
+          }
         }
       }
       link.collisions = std::move(all);

@@ -10,9 +10,8 @@ namespace tether::sim {
 /// unless the world is read strictly: then make_scene and make_physics_model refuse them.
 void leave_out_unusable_meshes(World& world, const MeshFiles& meshes, const WarningSink& warn);
 
-/// Replaces each collision of a model by one for each connected piece of its mesh, so that a UAV
-/// can fly between them: in a house of walls, through a gate. A mesh of more than 500 pieces stays
-/// one.
+/// Replaces each collision of a model by one for each convex piece of its mesh, so that a UAV can
+/// fly between them: inside of a room, through a gate.
 void split_collisions(World& world, const MeshFiles& meshes);
 
 }  // namespace tether::sim

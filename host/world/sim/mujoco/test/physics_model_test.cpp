@@ -80,12 +80,17 @@ TEST(PhysicsModelTest, MeshesOfOneFileAndScaleAreOne) {
   EXPECT_EQ(make_physics_model(world, [](const Warning&) {})->nmesh, 2);
 }
 
-TEST(PhysicsModelTest, WarnsOfMeshesAndOfPlanesThatMove) {
+TEST(PhysicsModelTest, WarnsOfMeshesThatAreNotConvexAndOfPlanesThatMove) {
   World world = test_world();
-  const auto tetra = std::filesystem::path(TETHER_TEST_DIR) / "data/tetra.stl";
-  world.models[0].links[0].collisions = {collision_of(MeshGeometry{tetra, "", {1.0, 1.0, 1.0}})};
+  const std::filesystem::path data = std::filesystem::path(TETHER_TEST_DIR) / "data";
+  const MeshGeometry tetra{data / "tetra.stl", "", {1.0, 1.0, 1.0}};
+  world.models[0].links[0].collisions = {collision_of(tetra)};
+  EXPECT_THAT(build(world), Pair(IsEmpty(), ElementsAre(mjGEOM_MESH, mjGEOM_BOX)));
+  const MeshGeometry slab_and_card{data / "slab.obj", "", {1.0, 1.0, 1.0}};
+  world.models[0].links[0].collisions = {collision_of(slab_and_card)};
   EXPECT_THAT(build(world),
-              Pair(ElementsAre(HasSubstr(tetra.string())), ElementsAre(mjGEOM_MESH, mjGEOM_BOX)));
+              Pair(ElementsAre(AllOf(HasSubstr("slab.obj"), HasSubstr("convex hull"))),
+                   ElementsAre(mjGEOM_MESH, mjGEOM_BOX)));
   world = test_world();
   world.uavs[0].body.collisions = {collision_of(PlaneGeometry{{0.0, 0.0, 1.0}, 1.0, 1.0})};
   EXPECT_THAT(build(world), Pair(ElementsAre(HasSubstr("'shape'")), ElementsAre(mjGEOM_BOX)));
@@ -95,8 +100,7 @@ TEST(PhysicsModelTest, AFlatMeshCollidesWithAThickness) {
   World world = test_world();
   const auto slab = std::filesystem::path(TETHER_TEST_DIR) / "data/slab.obj";
   world.models[0].links[0].collisions = {collision_of(MeshGeometry{slab, "card", {1.0, 1.0, 1.0}})};
-  EXPECT_THAT(build(world),
-              Pair(ElementsAre(HasSubstr(slab.string())), ElementsAre(mjGEOM_MESH, mjGEOM_BOX)));
+  EXPECT_THAT(build(world), Pair(IsEmpty(), ElementsAre(mjGEOM_MESH, mjGEOM_BOX)));
   const auto corners = MeshFiles().corners({slab, "card", {1.0, 1.0, 1.0}});
   const auto [low, high] = std::ranges::minmax(corners, {}, &uav::Vec3::x);
   EXPECT_NEAR(high.x - low.x, 0.002, 1e-6);

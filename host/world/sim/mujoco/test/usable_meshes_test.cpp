@@ -75,8 +75,8 @@ TEST(UsableMeshes, PiecesOfAMeshCollideEachByItself) {
     EXPECT_EQ(link.collisions[i].friction, 0.5);
     const auto corners = files.corners(std::get<MeshGeometry>(link.collisions[i].geometry));
     ASSERT_EQ(corners.size(), 4U);
-    EXPECT_EQ(corners.front().x, i == 0 ? 0.0 : 10.0);
-    EXPECT_EQ(corners.back().x, i == 0 ? 1.0 : 11.0);
+    EXPECT_EQ(corners.front().x, i == 0 ? 10.0 : 0.0);
+    EXPECT_EQ(corners.back().x, i == 0 ? 11.0 : 1.0);
   }
   EXPECT_EQ(files.corners(mesh).size(), 8U);
 }
