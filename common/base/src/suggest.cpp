@@ -55,6 +55,12 @@ std::string_view nearest(std::string_view word, std::span<const std::string_view
   return best;
 }
 
+bool is_misspelt(std::string_view word, std::string_view candidate) {
+  constexpr std::size_t kShortest = 4, kLongest = 64;
+  return word.size() >= kShortest && word.size() <= kLongest &&
+         edit_distance(word, candidate) == 1 && without_unit(word) != without_unit(candidate);
+}
+
 std::string quoted_list(std::span<const std::string_view> words) {
   if (words.empty()) return "none";
   std::string list;

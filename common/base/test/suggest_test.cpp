@@ -27,6 +27,15 @@ TEST(Nearest, FindsNothingForAnotherWord) {
   EXPECT_EQ(nearest("delay", {}), "");
 }
 
+TEST(Misspelt, IsAWordWithOneMistakeAndTheSameUnit) {
+  EXPECT_TRUE(is_misspelt("clauses", "clause"));
+  EXPECT_TRUE(is_misspelt("withn_s", "within_s"));
+  EXPECT_TRUE(is_misspelt("on_mis", "on_miss"));
+  EXPECT_FALSE(is_misspelt("clause", "clause"));
+  EXPECT_FALSE(is_misspelt("within_m", "within_s"));
+  EXPECT_FALSE(is_misspelt("radius_m", "retry"));
+}
+
 TEST(QuotedList, ReadsAsASentence) {
   EXPECT_EQ(quoted_list({}), "none");
   EXPECT_EQ(quoted_list({kKeys.data(), 1}), "'rate_hz'");

@@ -235,6 +235,15 @@ std::string text_of(const Clause& clause, const std::vector<Task>& tasks) {
   return text;
 }
 
+/// Other keys are the program's own, but for what is nearly one of these.
+void refuse_misspelt(const Table& table, std::span<const std::string_view> keys) {
+  for (const std::string& key : table.keys())
+    for (const std::string_view known : keys)
+      if (is_misspelt(key, known))
+        table.fail(key, "is not known; did you mean '" + std::string(known) +
+                            "'? If it is a key of your program's own, give it another name.");
+}
+
 Clause read_clause(const Table& table, const Names& names, const std::vector<Task>& tasks) {
   table.require_keys_in(kClauseKeys);
   Clause clause;
@@ -284,9 +293,12 @@ std::span<const std::string_view> task_keys() {
 Mission read_mission(const Table& file) {
   Mission mission;
   mission.file = file.where().file;
+  constexpr std::array<std::string_view, 4> kTopKeys = {"task", "clause", "fence", "anchor"};
+  refuse_misspelt(file, kTopKeys);
   if (!file.has("task"))
     throw Error(ErrorCode::kBadFile, {mission.file, 1},
                 "the mission has no task; add at least one [[task]]");
+  for (const Table& table : file.tables("task")) refuse_misspelt(table, task_keys());
   mission.tasks = read_tasks(file);
   add_deadlines(file, mission);
   const Names names = read_names(file);

@@ -85,6 +85,9 @@ TEST(Mission, RefusesTasksThatCannotBe) {
                          {search + "on_miss = \"search\"", 3, "on_miss"},
                          {search + "required = true\non_miss = \"continue\"", 3, "required"},
                          {search + "retry = -1", 3, "retry"},
+                         {search + "withn_s = 8", 3, "withn_s"},
+                         {search + "on_mis = \"abort\"", 3, "on_mis"},
+                         {search + "[[clauses]]\nalways = \"altitude <= 0.5 m\"", 3, "clauses"},
                          {search + "within_s = 0", 3, "within_s"},
                          {search + "within_s = 30\nbefore_s = 20", 3, "within_s"}}) {
     expect_refusal(c.text, c.line, c.subject);

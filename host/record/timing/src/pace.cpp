@@ -161,6 +161,8 @@ Pace pace_of(const record::Record& record, const record::SutInfo& sut) {
     const double all_s =
         std::accumulate(intervals.between_s.begin(), intervals.between_s.end(), 0.0);
     pace.behind = all_s > 0.0 ? intervals.behind_s / all_s : 0.0;
+    if (record.footer && record.footer->st_at_end > SimTime{})
+      pace.reading = std::min(1.0, all_s / to_seconds(record.footer->st_at_end));
   }
   pace.setpoint_hz = setpoint_rate(record, sut.uav);
   return pace;
@@ -193,7 +195,10 @@ std::string loader_of(const record::SutInfo& sut) {
 }
 
 Speed speed_of(const record::Header& header) {
-  Speed speed{.boards = header.boards, .machine = header.machine, .emulator = header.emulator};
+  Speed speed{.boards = header.boards,
+              .machine = header.machine,
+              .emulator = header.emulator,
+              .real_time_factor = header.real_time_factor};
   if (header.target) speed.target = header.target->name + " " + header.target->address;
   for (const record::SutInfo& sut : header.suts)
     speed.programs.push_back({.uav = sut.uav,
@@ -208,7 +213,8 @@ Speed speed_of(const record::Header& header) {
                               .loader = loader_of(sut),
                               .pinned_core = sut.pinned_core,
                               .idle_W = sut.energy ? sut.energy->idle_W : 0.0,
-                              .busy_core_W = sut.energy ? sut.energy->busy_core_W : 0.0});
+                              .busy_core_W = sut.energy ? sut.energy->busy_core_W : 0.0,
+                              .cores = sut.cores});
   return speed;
 }
 

@@ -51,8 +51,15 @@ TEST(Pace, IsThatOfTheImages) {
   EXPECT_NEAR(pace.p95_s, 0.075, 1e-9);
   EXPECT_NEAR(*pace.headroom(), 50.0 / 75.0, 1e-9);
   EXPECT_FALSE(pace.keeps_up());
+  EXPECT_EQ(pace.reading, 1.0) << "not known";
   ASSERT_EQ(pace.stages.size(), 2u);
   EXPECT_EQ(pace.stages.front().stage, "detect");
+}
+
+TEST(Pace, SaysForHowMuchOfTheFlightTheCameraIsRead) {
+  record::Record record = record_of_reads();
+  record.footer.emplace().st_at_end = SimTime(milliseconds(8000));
+  EXPECT_NEAR(pace_of(record)->reading, 0.25, 1e-9);
 }
 
 TEST(Pace, HasTheRateOfSetpoints) {

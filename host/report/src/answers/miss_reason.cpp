@@ -1,5 +1,6 @@
 #include "answers/miss_reason.h"
 
+#include "answers/compared.h"
 #include "answers/sufficient.h"
 #include "tables/report_format.h"
 
@@ -27,213 +28,9 @@ namespace {
 
 using Evidence = MissReason::Evidence;
 
-constexpr double kSameCost = 1.1;  // of an image, from flight to flight
-/// A condition so many times faster, or that computes for so little of the camera's period, misses
-/// the goal for another reason than speed.
-constexpr double kMuchFaster = 10.0;
-constexpr double kHardlyComputes = 0.25;
 constexpr SimTime kBeforeAnyProgram{std::chrono::milliseconds(50)};
 constexpr double kHardlyAnyEnergy = 0.05;  // of all that a flight takes
 constexpr double kEmpty = 0.01;            // share of the battery's capacity
-constexpr double kClearlyLess = 0.9;
-
-struct Compared {
-  ConditionVerdict* verdict;
-  std::vector<const campaign::TrialResult*> flights;  ///< distinct; not empty
-  std::string label;
-
-  const std::optional<Pace>& pace() const { return verdict->pace; }
-};
-
-// Comparisons of conditions.
-
-bool have_same_sensors(const Compared& a, const Compared& b) {
-  const auto simulator = [](const Compared& one) {
-    const auto& versions = one.flights.front()->versions;
-    const auto found = versions.find("simulator");
-    return found == versions.end() ? "" : found->second;
-  };
-  return a.flights.front()->profiles == b.flights.front()->profiles && simulator(a) == simulator(b);
-}
-
-/// "library ld-linux-aarch64.so.1": a loader whose name says the architecture.
-bool is_usual_loader(const std::string& loader) {
-  const std::string name = loader.substr(loader.find_last_of("/ ") + 1);
-  return name.starts_with("ld-linux") || name.starts_with("ld-musl");
-}
-
-bool is_of_other_architecture(const Speed::Program& one, const Speed::Program& other) {
-  return one.loader != other.loader && is_usual_loader(one.loader) && is_usual_loader(other.loader);
-}
-
-/// Of another architecture, it must be another build.
-bool is_same_program(const Speed::Program& one, const Speed::Program& other) {
-  return (one.build == other.build && one.libraries == other.libraries) ||
-         is_of_other_architecture(one, other);
-}
-
-/// A program may choose its instructions, and more, by the emulated CPU.
-bool is_same_cpu(const record::EmulatorInfo& one, const record::EmulatorInfo& other) {
-  return one.cpu_model.empty() || other.cpu_model.empty() || one.cpu_model == other.cpu_model;
-}
-
-/// What starts the programs, the programs, and what their computers draw.
-bool have_same_set_up(const Speed& a, const Speed& b) {
-  return std::ranges::equal(
-      a.programs, b.programs, [](const Speed::Program& one, const Speed::Program& other) {
-        return is_same_program(one, other) && one.launcher == other.launcher &&
-               one.idle_W == other.idle_W && one.busy_core_W == other.busy_core_W;
-      });
-}
-
-bool differ_in_speed_only(const Compared& a, const Compared& b) {
-  return a.verdict->uncharged == b.verdict->uncharged && a.pace() && b.pace() &&
-         a.pace()->radio == b.pace()->radio && have_same_set_up(a.pace()->speed, b.pace()->speed) &&
-         is_same_cpu(a.pace()->speed.emulator, b.pace()->speed.emulator) && have_same_sensors(a, b);
-}
-
-struct Costs {
-  std::string what;  ///< "an image costs"
-  double own_s = 0.0, other_s = 0.0;
-};
-
-/// What an image costs under both or, without a camera, the largest stage of the first that the
-/// other has, too.
-std::optional<Costs> costs_of(const Pace& one, const Pace& other) {
-  if (!one.camera.empty() && one.camera == other.camera)
-    return Costs{"an image costs", one.median_s, other.median_s};
-  for (const timing::StageRow& stage : one.stages) {
-    const auto same = std::ranges::find(other.stages, stage.stage, &timing::StageRow::stage);
-    if (same != other.stages.end())
-      return Costs{fmt::format("“{}” takes", stage.stage), stage.median_s, same->median_s};
-  }
-  return std::nullopt;
-}
-
-/// How many times slower the clocks of `one` are, if it differs from `other` in these only, on the
-/// same machine: the least of its programs. None: not known from the clocks.
-std::optional<double> slowdown_of_clocks(const Speed& one, const Speed& other) {
-  if (one.machine != other.machine || one.target != other.target || one.boards != other.boards ||
-      one.programs.size() != other.programs.size())
-    return std::nullopt;
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < one.programs.size(); ++i) {
-    const computer::Clock &a = one.programs[i].clock, &b = other.programs[i].clock;
-    const bool is_scripted = a.kind == computer::ClockKind::kScripted;
-    const bool is_scaled =
-        a.kind == computer::ClockKind::kCpu || a.kind == computer::ClockKind::kWall;
-    if (a.kind != b.kind || (!is_scripted && !is_scaled)) return std::nullopt;
-    least = std::min(least, is_scripted ? to_seconds(a.computing) / to_seconds(b.computing)
-                                        : a.factor / b.factor);
-  }
-  return least;
-}
-
-/// How many times slower `one` computes than `other`; none: not known.
-std::optional<double> slowdown_of(const Compared& one, const Compared& other) {
-  if (!differ_in_speed_only(other, one) || other.pace()->speed == one.pace()->speed)
-    return std::nullopt;
-  if (const auto known = slowdown_of_clocks(one.pace()->speed, other.pace()->speed)) return known;
-  const auto costs = costs_of(*one.pace(), *other.pace());
-  if (!costs || costs->own_s <= kSameCost * costs->other_s) return std::nullopt;
-  return costs->own_s / costs->other_s;
-}
-
-bool is_faster(const Compared& other, const Compared& missed) {
-  return slowdown_of(missed, other) > 1.0;
-}
-
-/// Whether a slower computer than this one, too, would have missed the goal for another reason.
-/// @pre is_faster
-bool is_much_faster(const Compared& other, const Compared& missed) {
-  const auto offered_hz = other.pace()->offered_hz;
-  return *slowdown_of(missed, other) >= kMuchFaster ||
-         (offered_hz && other.pace()->median_s * *offered_hz <= kHardlyComputes);
-}
-
-bool is_instant(const Compared& one) {
-  return one.pace() && one.pace()->speed.is_instant();
-}
-
-/// Whether chance does not explain that `a` reaches the goal more often, with Bonferroni's
-/// correction for that many comparisons.
-bool reaches_more_often(const ConditionVerdict& a, const ConditionVerdict& b,
-                        std::size_t comparisons) {
-  ConditionVerdict better = a;
-  better.distinct += a.failed;  // which could all have missed it
-  return better.distinct_reached * b.distinct > b.distinct_reached * better.distinct &&
-         chance_of(better, b) * static_cast<double>(comparisons) < kSignificant;
-}
-
-/// The first limit that `missed` does not meet and the other one always does; empty: there is none.
-std::string met_by(const ConditionVerdict& other, const ConditionVerdict& missed) {
-  for (const MissedLimit& one : missed.missed)
-    if (std::ranges::find(other.missed, one.limit, &MissedLimit::limit) == other.missed.end())
-      return one.limit;
-  return "";
-}
-
-/// How far flights are beyond a limit that all of them miss, in shares of it.
-struct Beyond {
-  double least = std::numeric_limits<double>::infinity(), most = 0.0;
-};
-std::map<std::string, Beyond> beyond_limits(const Compared& one) {
-  std::map<std::string, Beyond> limits;
-  std::map<std::string, std::size_t> flights;
-  const auto add = [&](const std::string& name, std::optional<double> margin) {
-    if (!margin || *margin >= 0.0) return;
-    Beyond& beyond = limits[name];
-    beyond = {std::min(beyond.least, -*margin), std::max(beyond.most, -*margin)};
-    ++flights[name];
-  };
-  for (const campaign::TrialResult* flight : one.flights) {
-    for (const campaign::MetricValue& metric : flight->metrics)
-      add(in_a_sentence(metric.label), margin_of(metric));
-    for (const judge::ClauseVerdict& clause : flight->clauses)
-      add(fmt::format("“{}”", clause.name), margin_of(clause));
-  }
-  std::erase_if(limits,
-                [&](const auto& limit) { return flights[limit.first] < one.flights.size(); });
-  return limits;
-}
-
-/// A limit that both miss, but each flight of the faster one by clearly less than each of the other
-/// one; empty: there is none.
-std::string nearer_to(const Compared& faster, const Compared& missed) {
-  const auto far = beyond_limits(missed);
-  for (const auto& [limit, near] : beyond_limits(faster))
-    if (const auto same = far.find(limit);
-        same != far.end() && near.most < kClearlyLess * same->second.least)
-      return limit;
-  return "";
-}
-
-bool costs_no_more(const Pace& image, const Pace& other) {
-  if (image.speed.is_scripted()) return true;
-  return !image.camera.empty() && image.camera == other.camera &&
-         image.median_s <= kSameCost * other.median_s && image.p95_s <= kSameCost * other.p95_s;
-}
-
-bool is_equally_fast_and_reaches(const Compared& other, const Compared& missed,
-                                 std::size_t comparisons) {
-  return other.pace() && missed.pace() && is_evidence(*other.verdict) &&
-         is_sufficient(other.verdict->ruling) && other.pace()->speed == missed.pace()->speed &&
-         have_same_sensors(other, missed) && costs_no_more(*missed.pace(), *other.pace()) &&
-         reaches_more_often(*other.verdict, *missed.verdict, comparisons);
-}
-
-/// Why one that reaches the goal is not compared with one that misses it, as a part of a sentence;
-/// empty: the two do not differ in what they fly with, or it is not known.
-std::string difference_of(const Compared& other, const Compared& missed) {
-  if (!other.pace() || !missed.pace()) return "";
-  if (!have_same_sensors(other, missed)) return "its sensors or its simulator differ";
-  if (other.pace()->radio != missed.pace()->radio) return "its radio differs";
-  const Speed &a = other.pace()->speed, &b = missed.pace()->speed;
-  if (!std::ranges::equal(a.programs, b.programs, is_same_program))
-    return "its program is another build, or has other libraries, arguments or files";
-  if (!have_same_set_up(a, b)) return "something else starts its program, or its power differs";
-  return is_same_cpu(a.emulator, b.emulator) ? "" : "its emulated CPU is another model";
-}
 
 // What happened in a flight.
 
@@ -348,6 +145,14 @@ std::string in_each(const Compared& missed, const Find& find) {
 
 // The reason.
 
+/// The most that one of its programs can use; 0: not known.
+int cores_of(const Compared& one) {
+  int most = 0;
+  for (const Speed::Program& program : one.pace()->speed.programs)
+    most = std::max(most, program.cores);
+  return most;
+}
+
 /// "is fast enough so far: an image costs 24 ms instead of 145 ms, 5.9 × less"
 std::string comparison_text(const Compared& other, const Compared& missed) {
   const ConditionVerdict& verdict = *other.verdict;
@@ -365,6 +170,11 @@ std::string comparison_text(const Compared& other, const Compared& missed) {
   if (own_hz > 0.0 && other_hz > kSameCost * own_hz)
     cost_text += fmt::format(", and set-points are sent {:.2g} times a second instead of {:.2g}",
                              other_hz, own_hz);
+  const int own_cores = cores_of(missed), other_cores = cores_of(other);
+  if (own_cores != other_cores && own_cores > 0 && other_cores > 0)
+    cost_text += fmt::format(", and it has {} instead of {}",
+                             counted(static_cast<std::size_t>(other_cores), "core"),
+                             counted(static_cast<std::size_t>(own_cores), "core"));
   return (is_sufficient(verdict.ruling) ? fmt::format("is {}", name(verdict.ruling))
                                         : fmt::format("reaches it in {} of {}", verdict.reached,
                                                       counted(verdict.flown, "flight"))) +
@@ -384,7 +194,9 @@ MissReason reason_of(const Compared& missed, const std::vector<Compared>& all,
                      std::size_t comparisons) {
   std::vector<const Compared*> faster;
   for (const Compared& other : all)
-    if (is_evidence(*other.verdict) && is_faster(other, missed)) faster.push_back(&other);
+    if (is_evidence(*other.verdict) && is_faster(other, missed) &&
+        (other.verdict->is_missed() || !has_times_of_another_kind(other, missed)))
+      faster.push_back(&other);
   // The slowest first: the least that would do.
   std::ranges::stable_sort(faster, {},
                            [&](const Compared* other) { return *slowdown_of(missed, *other); });
@@ -440,7 +252,7 @@ MissReason reason_of(const Compared& missed, const std::vector<Compared>& all,
     return {Evidence::kPossibleCause, "", cause};
   for (const Compared& other : all)
     if (is_evidence(*other.verdict) && reaches_instead(other))
-      if (const std::string why = difference_of(other, missed); !why.empty())
+      if (const std::string why = why_not_compared(other, missed); !why.empty())
         return {Evidence::kNotComparable, other.label, why};
   return {};
 }

@@ -33,7 +33,11 @@ std::string capital(std::string_view text) {
 std::string pace_text(const Pace& pace) {
   std::string text;
   if (!pace.camera.empty()) {
-    text = fmt::format("the camera is read {} times a second", rate_text(pace.read_hz));
+    constexpr double kMost = 0.5;
+    text = fmt::format("the camera is read {} times a second",
+                       rate_text(std::min(pace.read_hz, pace.offered_hz.value_or(pace.read_hz))));
+    if (pace.reading < kMost)
+      text += fmt::format(" during {} of the flight", share_text(pace.reading));
     if (pace.offered_hz && !pace.reads_nearly_every())
       text += fmt::format(" instead of {}", rate_text(*pace.offered_hz));
     else if (pace.offered_hz && !pace.keeps_up())
@@ -311,7 +315,7 @@ std::string left_out_in_lead(const ConditionVerdict& condition) {
   if (!leaves_out(condition)) return "";
   if (!condition.uncharged.empty())
     return fmt::format(", but “{}” is charged nothing", condition.uncharged.front());
-  return condition.left_out.empty() ? kDoubtful : kNotAsWritten;
+  return condition.left_out.empty() ? "" : kNotAsWritten;
 }
 
 /// Empty: as that on several flights.
@@ -321,7 +325,9 @@ std::string_view lead_of_one_flight(const ConditionVerdict& condition) {
 
 std::string lead_of(const ConditionVerdict& condition) {
   const std::string_view of_one = lead_of_one_flight(condition);
-  return std::string(of_one.empty() ? words_of(condition.ruling).lead : of_one) +
+  const std::string lead(of_one.empty() ? words_of(condition.ruling).lead : of_one);
+  const bool is_in_doubt = is_sufficient(condition.ruling) && !condition.doubtful.empty();
+  return (is_in_doubt ? "Doubtful whether " + in_a_sentence(lead) : lead) +
          left_out_in_lead(condition);
 }
 

@@ -50,6 +50,9 @@ TEST_F(MissReasons, AreSpeedIfAFasterConditionReachesTheGoal) {
   paces_[host]->radio = "radio=log_distance";
   expect_not_compared("its radio differs");
   paces_[host]->radio.clear();
+  paces_[host]->speed.real_time_factor = 0.3;
+  expect_not_compared("its real_time_factor differs");
+  paces_[host]->speed.real_time_factor = 0.0;
   program(board).launcher = "wrapper --wrong";
   expect_not_compared("something else starts its program");
   program(board).launcher.clear();
@@ -98,6 +101,26 @@ TEST_F(MissReasons, CompareFactorsOfOneMachineAndNotWhatFlightsComputed) {
   EXPECT_THAT(verdict_text({verdict()}, Markup::kPlain), HasSubstr("its computer is 12 × faster"));
   paces_[board]->speed.machine = "there";
   EXPECT_EQ(ruling(board), Ruling::kOtherReason) << "by what they computed, it is the faster one";
+}
+
+// A program that computes on purpose for some time does so on each computer.
+TEST_F(MissReasons, AreNotShownByTimesOfTheScenarioBesideMeasuredOnes) {
+  const std::size_t board = add("board", 0, 5, measured(0.2));
+  add("on paper", 5, 0, scripted(std::chrono::milliseconds(1)));
+  EXPECT_EQ(ruling(board), Ruling::kGoalMissed);
+  EXPECT_THAT(answers_of({verdict()})[0].rest,
+              HasSubstr("“on paper” reaches it, but is not compared, since one of the two has "
+                        "computing times of the scenario"));
+}
+
+TEST_F(MissReasons, SayThatTheFasterComputerHasMoreCores) {
+  const std::size_t board = add("board", 0, 5, measured(0.2));
+  const std::size_t host = add("host", 5, 0, measured(0.02));
+  program(board).clock.factor = 10.0;
+  program(board).cores = 1;
+  program(host).cores = 4;
+  EXPECT_EQ(ruling(board), Ruling::kNotFastEnough);
+  EXPECT_THAT(answers_of({verdict()})[0].rest, HasSubstr("and it has 4 cores instead of 1 core."));
 }
 
 TEST_F(MissReasons, CompareScriptedTimesExactly) {

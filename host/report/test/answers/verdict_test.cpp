@@ -251,7 +251,7 @@ TEST(Verdict, ThatIsGoodNamesWhatIsDoubtful) {
   scenario.conditions[0].trials[3].warnings = {
       {Consequence::kDoubtful, {}, "UAV 'uav1'", "starts inside 'room'"}};
   EXPECT_THAT(verdict_text({verdict_of(scenario)}, Markup::kPlain),
-              AllOf(StartsWith("Fast enough so far, but something is doubtful: "),
+              AllOf(StartsWith("Doubtful whether fast enough so far: "),
                     HasSubstr("Doubtful, which can change the answer: UAV 'uav1' starts inside "
                               "'room'.")));
 }

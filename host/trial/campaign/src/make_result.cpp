@@ -1,17 +1,14 @@
 #include "contacts.h"
 #include "energy.h"
+#include "program_doubts.h"
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
-#include <iterator>
-#include <numeric>
 #include <set>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
 
 #include <tether/base/text_table.h>
 #include <tether/campaign/copies.h>
@@ -47,96 +44,6 @@ TrialResult result_of(const scenario::Scenario& scenario, const scenario::Condit
   return result;
 }
 
-/// The last thing that the flight controller of a UAV refused or warned of; empty: nothing. Long
-/// texts are sent in pieces.
-std::string refusal_of(const record::Record& record, const std::string& uav) {
-  constexpr int kWarning = 4;  // MAV_SEVERITY_WARNING; less is worse (mavlink.io, "common")
-  std::string refusal;
-  for (const auto& logged : record.autopilot) {
-    const record::AutopilotMessage& m = logged.message;
-    if (m.uav != uav || !m.of_controller() || m.name != "STATUSTEXT") continue;
-    const auto fields = nlohmann::json::parse(m.fields, nullptr, false);
-    if (!fields.is_object() || fields.value("severity", kWarning + 1) > kWarning) continue;
-    if (fields.value("chunk_seq", 0) == 0) refusal.clear();
-    refusal += fields.value("text", "");
-  }
-  return refusal;
-}
-
-/// Whether a program neither read nor sent anything. One with a flight controller also receives
-/// whenever it waits, whether it listens or not.
-bool did_nothing(const record::Record& record, const record::SutInfo& sut) {
-  const auto is_sent = [&](const auto& logged) {
-    return logged.message.uav == sut.uav && logged.message.to_controller;
-  };
-  const auto is_call = [&](const auto& logged) {
-    const std::string& kind = logged.message.kind;
-    return logged.message.uav == sut.uav && kind != record::kFinish && kind != record::kSleep &&
-           !(kind == record::kReceive && sut.controller);
-  };
-  return std::ranges::none_of(record.autopilot, is_sent) &&
-         std::ranges::none_of(record.interactions, is_call);
-}
-
-/// A program with a flight controller: whether it did anything and, if it says that it has flown,
-/// whether it can have done so.
-/// Doubts go to `warnings`.
-void check_companion(const record::Record& record, bool nothing, SutResult& sut,
-                     std::vector<Warning>& warnings) {
-  constexpr double kAway_m = 0.2;
-  constexpr double kHardlyTurned = 0.9962;  // cosine of 5 degrees, half the angle
-  const auto is_sent = [&](const auto& logged) {
-    const record::AutopilotMessage& m = logged.message;
-    return m.uav == sut.uav && m.to_controller && m.outcome == record::kDelivered &&
-           !m.name.empty();
-  };
-  const auto doubt = [&](const std::string& what) {
-    warnings.push_back({Consequence::kDoubtful, {}, "UAV '" + sut.uav + "'", what});
-  };
-  if (const auto refused = std::ranges::count_if(record.autopilot, [&](const auto& logged) {
-        return logged.message.uav == sut.uav && logged.message.part == 0 &&
-               logged.message.is_refused();
-      }))
-    doubt(
-        fmt::format("has a flight controller that refused {} message{} of its program: "
-                    "not signed with the key of 'signing_key_file', or sent again",
-                    refused, refused > 1 ? "s" : ""));
-  const bool has_sent = std::ranges::any_of(record.autopilot, is_sent);
-  if (nothing)
-    return doubt("has a program that did nothing with it: no sensor was read, and nothing sent");
-  if (!sut.reached_goal)
-    if (const std::string said = refusal_of(record, sut.uav); !said.empty())
-      sut.outcome +=
-          fmt::format("{}the flight controller said: {}", sut.outcome.empty() ? "" : "; ", said);
-  if (!sut.reached_goal && sut.finished) return;
-  const record::GroundTruth *first = nullptr, *last = nullptr;
-  bool has_moved = false, has_turned = false;
-  for (const auto& logged : record.ground_truth) {
-    if (logged.message.uav != sut.uav) continue;
-    last = &logged.message;
-    if (first == nullptr) first = last;
-    double square_m2 = 0.0;
-    for (std::size_t i = 0; i < 3; ++i)
-      square_m2 += std::pow(last->p_WB_m[i] - first->p_WB_m[i], 2);
-    has_moved |= square_m2 > kAway_m * kAway_m;
-    const double cosine = std::inner_product(std::begin(last->q_WB), std::end(last->q_WB),
-                                             std::begin(first->q_WB), 0.0);  // of half the angle
-    has_turned |= std::abs(cosine) < kHardlyTurned;
-  }
-  if (!has_sent) return doubt("has a flight controller to which its program sent no message");
-  const bool began_in_air = first != nullptr && first->clearance_m && *first->clearance_m > kAway_m;
-  if (!has_moved && !(began_in_air && has_turned))
-    doubt(sut.reached_goal
-              ? "never left its start, although its program says that it reached its goal"
-              : "never left its start");
-  if (sut.reached_goal && !began_in_air && last != nullptr && last->clearance_m &&
-      *last->clearance_m > kAway_m)
-    doubt(
-        fmt::format("is in the air ({:.3g} m from anything) when its program ends: what follows "
-                    "was not flown",
-                    *last->clearance_m));
-}
-
 std::vector<SutResult> sut_results(const record::Record& record,
                                    const std::vector<TaskEnd>& task_ends,
                                    std::vector<Warning>& warnings, std::string& never_began) {
@@ -155,14 +62,8 @@ std::vector<SutResult> sut_results(const record::Record& record,
       sut.outcome = end.outcome;
       sut.details = end.details;
     }
-    const bool nothing = did_nothing(record, info);
-    if (info.controller) check_companion(record, nothing, sut, warnings);
-    // Without a flight controller, a program can also be there as a load beside others; and one
-    // with Tether's library says itself that it has flown.
-    const bool had_to = info.controller || (info.as_is && record.header.suts.size() == 1);
-    if (nothing && sut.finished && had_to && never_began.empty())
-      never_began = fmt::format("the program of UAV '{}' ended before it did anything with it{}{}",
-                                sut.uav, sut.outcome.empty() ? "" : ": ", sut.outcome);
+    if (std::string why = check_program(record, info, sut, warnings); never_began.empty())
+      never_began = std::move(why);
     suts.push_back(std::move(sut));
   }
   return suts;
@@ -253,6 +154,14 @@ void judge_missions(TrialResult& result, const scenario::Scenario& scenario,
     judge::Verdicts verdicts = judge::judge(*uav.sut.mission, uav.placement.name, record);
     for (judge::ClauseVerdict& clause : verdicts.clauses)
       if (scenario.uavs.size() > 1) clause.name += ", " + uav.placement.name;
+    const auto own = std::ranges::find(result.suts, uav.placement.name, &SutResult::uav);
+    // A program as it is does not tell what task it flies.
+    if (verdicts.tasks.empty() && own != result.suts.end() && own->reached_goal && !own->as_is)
+      result.warnings.push_back({Consequence::kDoubtful,
+                                 {},
+                                 "UAV '" + uav.placement.name + "'",
+                                 "has a program that says it reached its goal, but began no task "
+                                 "of its mission"});
     result.tasks.insert(result.tasks.end(), verdicts.tasks.begin(), verdicts.tasks.end());
     result.clauses.insert(result.clauses.end(), verdicts.clauses.begin(), verdicts.clauses.end());
   }

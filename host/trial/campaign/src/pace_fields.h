@@ -74,6 +74,7 @@ void fields(auto& io, Maybe<timing::Speed::Program> auto& m) {
   io.optional("pinned_core", m.pinned_core);
   io("idle_w", m.idle_W);
   io("busy_core_w", m.busy_core_W);
+  if (io.has("cores", m.cores > 0)) io("cores", m.cores);
 }
 
 /// Without the emulator, which the result has.
@@ -82,6 +83,8 @@ void fields(auto& io, Maybe<timing::Speed> auto& m) {
   io.some("boards", m.boards);
   io.some("machine", m.machine);
   io.some("target", m.target);
+  if (io.has("real_time_factor", m.real_time_factor > 0.0))
+    io("real_time_factor", m.real_time_factor);
 }
 
 /// Without the seed, which the result has.
@@ -97,6 +100,7 @@ void fields(auto& io, Maybe<timing::Pace> auto& m) {
     io("p95_s", m.p95_s);
     io("waiting", m.waiting);
     if (io.has("behind", m.behind > 0.0)) io("behind", m.behind);
+    if (io.has("reading", m.reading < 1.0)) io("reading", m.reading);
   }
   if (io.has("setpoint_hz", m.setpoint_hz > 0.0)) io("setpoint_hz", m.setpoint_hz);
   io("shares_real_board", m.shares_real_board);

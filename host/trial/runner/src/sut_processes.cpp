@@ -166,11 +166,11 @@ std::vector<std::string> SutProcesses::await_exit(
   std::vector<std::string> notes;
   for (Sut& sut : suts_)
     if (!sut.process->wait(kExitLimit))
-      notes.push_back(fmt::format("{} ({}) had finished but did not exit within {} s; it was ended",
-                                  sut.name, sut.program, to_seconds(kExitLimit)));
+      notes.push_back(fmt::format("{} ({}) did not exit within {} s; it was ended", sut.name,
+                                  sut.program, to_seconds(kExitLimit)));
     else if (const int code = sut.process->poll()->code;
              code > os::kSignalled || (code != 0 && has_reached(sut)))
-      notes.push_back("after it had finished: " + describe_end(sut));
+      notes.push_back(describe_end(sut));
   return notes;
 }
 

@@ -45,7 +45,7 @@ class SutProcesses {
   /// others end because of it. Empty if nothing is known. Output is left out that ends with the
   /// last part of the reason, after ": ".
   std::string post_mortem(const std::string& reason, const std::string& lost_uav = "");
-  /// Waits until finished SUTs have exited. Returns a note for each that was ended by a signal,
+  /// Waits until finished SUTs have exited. Returns a text for each that was ended by a signal,
   /// that did not exit, or whose exit code is a failure although it reported its goal as reached.
   std::vector<std::string> await_exit(const std::vector<coordinator::SutReport>& reports);
   /// Ends SUTs on a board, and copies their files to the run's folder. Returns a warning for each

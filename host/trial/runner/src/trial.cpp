@@ -172,6 +172,9 @@ campaign::TrialResult fly(const TrialSpec& spec, const StartSimulator& start,
     result.this_run.doubts = conducted.doubts;
     std::ranges::move(of_other_arguments(inputs.replayed, conducted.record.header),
                       std::back_inserter(result.warnings));
+    for (const std::string& exit : conducted.bad_exits)
+      result.warnings.push_back(
+          {Consequence::kDoubtful, {}, "after its program had finished:", exit});
     result.this_run.loads = conducted.loads;
     add_board_loads(result.this_run);
     const auto& notes = inputs.replayed.warnings;

@@ -330,8 +330,9 @@ Conducted TrialRun::conduct() {
     if (auto doubt = doubt_of(loads.back(), *clock == CLOCK_MONOTONIC))
       doubted.push_back(std::move(*doubt));
   }
-  return {std::move(end.report), memory_.take(), std::move(notes_), std::move(doubted),
-          std::move(loads),      target_,        target_after_,     std::move(others_)};
+  return {std::move(end.report), memory_.take(),     std::move(notes_),
+          std::move(doubted),    std::move(loads),   target_,
+          target_after_,         std::move(others_), std::move(bad_exits_)};
 }
 
 TrialEnd TrialRun::fly(std::optional<MachineWatch>& machine) {
@@ -453,8 +454,7 @@ std::string TrialRun::reach_hint(const TrialEnd& end) {
 }
 
 void TrialRun::end_suts(const TrialEnd& end) {
-  if (end.report.end == RunEnd::kFinished)
-    for (std::string& note : suts_.await_exit(end.report.suts)) notes_.push_back(std::move(note));
+  if (end.report.end == RunEnd::kFinished) bad_exits_ = suts_.await_exit(end.report.suts);
   for (const std::string& warning : suts_.bring_back())
     if (observer_.warn) observer_.warn(warning);
   if (std::ranges::any_of(spec_.scenario.uavs, [](const scenario::UavSetup& uav) {

@@ -55,7 +55,8 @@ struct Conducted {
   // Not in the record of a repeatable run.
   std::optional<record::TargetInfo> target;  ///< none if the user starts the SUTs
   record::Readings target_after;
-  std::vector<MachineReadings> others;  ///< further machines of a mixed fleet
+  std::vector<MachineReadings> others;   ///< further machines of a mixed fleet
+  std::vector<std::string> bad_exits{};  ///< of programs that had reached their goals
 };
 
 /// One run of the coordinator with its SUTs, in phases: start the SUTs, fly, find the cause of a
@@ -101,6 +102,7 @@ class TrialRun {
   bool have_all_joined_ = false;
   record::Readings target_after_;
   std::vector<std::string> notes_;
+  std::vector<std::string> bad_exits_;
 };
 
 }  // namespace tether::runner

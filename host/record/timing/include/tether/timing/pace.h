@@ -45,6 +45,7 @@ struct Speed {
     std::string loader{};  ///< of its libraries, which differs between architectures
     std::optional<int> pinned_core{};
     double idle_W = 0.0, busy_core_W = 0.0;  ///< of the computer; 0: energy is not simulated
+    int cores = 0;                           ///< as in record::SutInfo
     friend bool operator==(const Program&, const Program&) = default;
   };
   std::vector<Program> programs{};  ///< in the record's order
@@ -52,6 +53,7 @@ struct Speed {
   std::string machine{};  ///< empty: of a repeatable run, in which it does not matter
   std::string target{};   ///< its name and address
   record::EmulatorInfo emulator{};
+  double real_time_factor = 0.0;  ///< limit on ST per WT; 0: none
   friend bool operator==(const Speed&, const Speed&) = default;
 
   /// Whether the scenario sets how long each program computes.
@@ -83,6 +85,7 @@ struct Pace {
   /// Share of the time between the first image and the last in which images came late because
   /// computing took longer than the camera's period. A median says nothing of a short, slow phase.
   double behind = 0.0;
+  double reading = 1.0;  ///< share of the flight between the first image and the last
 
   /// Several programs share a real board: times include waiting for its cores, which is not known.
   bool shares_real_board = false;

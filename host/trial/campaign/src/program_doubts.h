@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <tether/campaign/result.h>
+
+namespace tether::campaign {
+
+/// Whether a program did anything with its UAV and, if it says that it has flown, whether it can
+/// have done so. Doubts go to `warnings`; what its flight controller refused, to the outcome.
+/// @return why the program was never set up; empty: it was.
+std::string check_program(const record::Record& record, const record::SutInfo& info, SutResult& sut,
+                          std::vector<Warning>& warnings);
+
+}  // namespace tether::campaign
