@@ -6,18 +6,16 @@
 
 #include "files/file_kind.h"
 #include "files/mesh_companions.h"
+#include "files/quiet_console.h"
 #include "files/sdf_numbers.h"
 #include "files/sdf_rules.h"
 
 #include <algorithm>
-#include <iostream>
 #include <new>
 #include <regex>
 #include <sstream>
-#include <streambuf>
 #include <vector>
 
-#include <console_bridge/console.h>
 #include <tinyxml2.h>
 
 #include <tether/os/text_file.h>
@@ -27,34 +25,6 @@ namespace tether::sim {
 namespace fs = std::filesystem;
 
 namespace {
-
-/// Discards what libsdformat and the URDF reader that it tries on broken files write to the
-/// console while this lives.
-class QuietConsole {
- public:
-  QuietConsole()
-      : messages_(sdf::Console::Instance()->GetMsgStream().GetStream()),
-        errors_(std::cerr.rdbuf(&nothing_)) {
-    sdf::Console::Instance()->GetMsgStream().SetStream(nullptr);
-    console_bridge::noOutputHandler();
-  }
-  ~QuietConsole() {
-    sdf::Console::Instance()->GetMsgStream().SetStream(messages_);
-    console_bridge::restorePreviousOutputHandler();
-    std::cerr.rdbuf(errors_);
-    std::cerr.clear();
-  }
-  QuietConsole(const QuietConsole&) = delete;
-  QuietConsole& operator=(const QuietConsole&) = delete;
-
- private:
-  struct Nothing : std::streambuf {
-    int overflow(int c) override { return c; }
-  };
-  std::ostream* messages_;
-  Nothing nothing_;
-  std::streambuf* errors_;
-};
 
 /// Longer messages of libsdformat, which may quote a whole file, are cut: std::regex needs stack
 /// for every character.

@@ -1,6 +1,7 @@
 #include "files/sdf_xml.h"
 
 #include "files/file_kind.h"
+#include "files/urdf.h"
 
 #include <algorithm>
 #include <array>
@@ -119,6 +120,10 @@ std::unique_ptr<XMLDocument> read_xml(const fs::path& file) {
   document->Parse(text.data(), text.size());
   if (document->Error() && document->ErrorID() != tinyxml2::XML_ERROR_EMPTY_DOCUMENT)
     refuse_file(file, document->ErrorLineNum(), "not well-formed XML: " + words_of(*document));
+  if (const XMLElement* robot = document->FirstChildElement("robot")) {
+    const std::string sdf = sdf_of_urdf(file, *robot, text);
+    document->Parse(sdf.data(), sdf.size());
+  }
   require_sdf(file, *document);
   return document;
 }
