@@ -213,8 +213,7 @@ Speed speed_of(const record::Header& header) {
                               .loader = loader_of(sut),
                               .pinned_core = sut.pinned_core,
                               .idle_W = sut.energy ? sut.energy->idle_W : 0.0,
-                              .busy_core_W = sut.energy ? sut.energy->busy_core_W : 0.0,
-                              .cores = sut.cores});
+                              .busy_core_W = sut.energy ? sut.energy->busy_core_W : 0.0});
   return speed;
 }
 

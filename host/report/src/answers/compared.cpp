@@ -66,6 +66,9 @@ bool have_same_set_up(const Speed& a, const Speed& b) {
 }  // namespace
 
 std::string difference_of(const Compared& one, const Compared& other) {
+  for (const std::string& line : one.verdict->doubtful)
+    if (std::ranges::count(other.verdict->doubtful, line) == 0)
+      return "something about it is doubtful";
   if (!have_same_sensors(one, other)) return "its sensors or its simulator differ";
   if (one.pace()->radio != other.pace()->radio) return "its radio differs";
   const Speed &a = one.pace()->speed, &b = other.pace()->speed;
@@ -73,6 +76,9 @@ std::string difference_of(const Compared& one, const Compared& other) {
     return "its program is another build, or has other libraries, arguments or files";
   if (!have_same_set_up(a, b)) return "something else starts its program, or its power differs";
   if (!is_same_cpu(a.emulator, b.emulator)) return "its emulated CPU is another model";
+  if (!std::ranges::equal(a.programs, b.programs, {}, &Speed::Program::cores,
+                          &Speed::Program::cores))
+    return "the number of its cores differs";
   // What a program does by a clock of the machine depends on how fast simulated time passes.
   if (a.real_time_factor != b.real_time_factor) return "its real_time_factor differs";
   return "";

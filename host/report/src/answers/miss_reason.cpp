@@ -145,14 +145,6 @@ std::string in_each(const Compared& missed, const Find& find) {
 
 // The reason.
 
-/// The most that one of its programs can use; 0: not known.
-int cores_of(const Compared& one) {
-  int most = 0;
-  for (const Speed::Program& program : one.pace()->speed.programs)
-    most = std::max(most, program.cores);
-  return most;
-}
-
 /// "is fast enough so far: an image costs 24 ms instead of 145 ms, 5.9 × less"
 std::string comparison_text(const Compared& other, const Compared& missed) {
   const ConditionVerdict& verdict = *other.verdict;
@@ -170,11 +162,6 @@ std::string comparison_text(const Compared& other, const Compared& missed) {
   if (own_hz > 0.0 && other_hz > kSameCost * own_hz)
     cost_text += fmt::format(", and set-points are sent {:.2g} times a second instead of {:.2g}",
                              other_hz, own_hz);
-  const int own_cores = cores_of(missed), other_cores = cores_of(other);
-  if (own_cores != other_cores && own_cores > 0 && other_cores > 0)
-    cost_text += fmt::format(", and it has {} instead of {}",
-                             counted(static_cast<std::size_t>(other_cores), "core"),
-                             counted(static_cast<std::size_t>(own_cores), "core"));
   return (is_sufficient(verdict.ruling) ? fmt::format("is {}", name(verdict.ruling))
                                         : fmt::format("reaches it in {} of {}", verdict.reached,
                                                       counted(verdict.flown, "flight"))) +

@@ -326,8 +326,7 @@ std::string_view lead_of_one_flight(const ConditionVerdict& condition) {
 std::string lead_of(const ConditionVerdict& condition) {
   const std::string_view of_one = lead_of_one_flight(condition);
   const std::string lead(of_one.empty() ? words_of(condition.ruling).lead : of_one);
-  const bool is_in_doubt = is_sufficient(condition.ruling) && !condition.doubtful.empty();
-  return (is_in_doubt ? "Doubtful whether " + in_a_sentence(lead) : lead) +
+  return (is_in_doubt(condition) ? "Doubtful whether " + in_a_sentence(lead) : lead) +
          left_out_in_lead(condition);
 }
 
@@ -405,7 +404,8 @@ std::string_view name(Ruling ruling) {
 
 std::string name(const ConditionVerdict& condition) {
   const std::string of_one(lead_of_one_flight(condition));
-  return of_one.empty() ? std::string(name(condition.ruling)) : in_a_sentence(of_one);
+  return (is_in_doubt(condition) ? "doubtful whether " : "") +
+         (of_one.empty() ? std::string(name(condition.ruling)) : in_a_sentence(of_one));
 }
 
 std::string missed_text(const MissedLimits& missed, bool of_one) {

@@ -93,6 +93,10 @@ bool is_left_out(const Warning& warning) {
   return warning.can_change_verdict && warning.consequence != Consequence::kDoubtful;
 }
 
+bool is_in_doubt(const ConditionVerdict& condition) {
+  return is_sufficient(condition.ruling) && !condition.doubtful.empty();
+}
+
 bool is_doubtful(const Warning& warning) {
   return warning.can_change_verdict && warning.consequence == Consequence::kDoubtful;
 }

@@ -29,6 +29,9 @@ inline constexpr const char* kVarySeeds =
     "More flights show nothing new, because the seeds change nothing. Give the sensors noise or "
     "delays that vary (a profile), or let the world or the start vary.";
 
+/// A good answer that rests on something doubtful.
+bool is_in_doubt(const ConditionVerdict& condition);
+
 /// What can change a flight's verdict: something that it left out, or that may be a mistake.
 bool is_left_out(const Warning& warning);
 bool is_doubtful(const Warning& warning);

@@ -53,6 +53,9 @@ TEST_F(MissReasons, AreSpeedIfAFasterConditionReachesTheGoal) {
   paces_[host]->speed.real_time_factor = 0.3;
   expect_not_compared("its real_time_factor differs");
   paces_[host]->speed.real_time_factor = 0.0;
+  program(board).cores = 1;
+  expect_not_compared("the number of its cores differs");
+  program(board).cores = 0;
   program(board).launcher = "wrapper --wrong";
   expect_not_compared("something else starts its program");
   program(board).launcher.clear();
@@ -111,16 +114,6 @@ TEST_F(MissReasons, AreNotShownByTimesOfTheScenarioBesideMeasuredOnes) {
   EXPECT_THAT(answers_of({verdict()})[0].rest,
               HasSubstr("“on paper” reaches it, but is not compared, since one of the two has "
                         "computing times of the scenario"));
-}
-
-TEST_F(MissReasons, SayThatTheFasterComputerHasMoreCores) {
-  const std::size_t board = add("board", 0, 5, measured(0.2));
-  const std::size_t host = add("host", 5, 0, measured(0.02));
-  program(board).clock.factor = 10.0;
-  program(board).cores = 1;
-  program(host).cores = 4;
-  EXPECT_EQ(ruling(board), Ruling::kNotFastEnough);
-  EXPECT_THAT(answers_of({verdict()})[0].rest, HasSubstr("and it has 4 cores instead of 1 core."));
 }
 
 TEST_F(MissReasons, CompareScriptedTimesExactly) {

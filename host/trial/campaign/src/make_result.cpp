@@ -208,6 +208,10 @@ TrialResult make_result(const scenario::Scenario& scenario, const scenario::Cond
   judge_missions(result, scenario, record);
   result.energy = energy_of(record, result.tasks);
   result.pace = timing::pace_of(record);
+  if (result.pace)
+    for (std::size_t i = 0; i < result.pace->speed.programs.size(); ++i)
+      if (const auto& target = computer_of(condition, i).target)
+        result.pace->speed.programs[i].cores = target->cores;
   result.flight_digest = flight_digest(record);
   result.versions = {{"tether", record.header.tether_version},
                      {"simulator", record.header.simulator}};

@@ -49,7 +49,7 @@ bool did_nothing(const record::Record& record, const record::SutInfo& sut) {
 void check_companion(const record::Record& record, bool nothing, SutResult& sut,
                      std::vector<Warning>& warnings) {
   constexpr double kAway_m = 0.2;
-  constexpr double kHardlyTurned = 0.9962;  // cosine of 5 degrees, half the angle
+  constexpr double kHardlyTurned = 0.99966;  // cosine of 1.5 degrees, half the angle
   const auto is_sent = [&](const auto& logged) {
     const record::AutopilotMessage& m = logged.message;
     return m.uav == sut.uav && m.to_controller && m.outcome == record::kDelivered &&
@@ -68,11 +68,10 @@ void check_companion(const record::Record& record, bool nothing, SutResult& sut,
                     refused, refused > 1 ? "s" : ""));
   const bool has_sent = std::ranges::any_of(record.autopilot, is_sent);
   if (nothing) return doubt(kDidNothing);
-  if (!sut.reached_goal)
-    if (const std::string said = refusal_of(record, sut.uav); !said.empty())
-      sut.outcome +=
-          fmt::format("{}the flight controller said: {}", sut.outcome.empty() ? "" : "; ", said);
-  if (!sut.reached_goal && sut.finished) return;
+  const std::string said = sut.reached_goal ? "" : refusal_of(record, sut.uav);
+  if (!said.empty())
+    sut.outcome +=
+        fmt::format("{}the flight controller said: {}", sut.outcome.empty() ? "" : "; ", said);
   const record::GroundTruth *first = nullptr, *last = nullptr;
   bool has_moved = false, has_turned = false;
   for (const auto& logged : record.ground_truth) {
@@ -107,12 +106,13 @@ std::string check_program(const record::Record& record, const record::SutInfo& i
                           std::vector<Warning>& warnings) {
   const bool nothing = did_nothing(record, info);
   if (info.controller) check_companion(record, nothing, sut, warnings);
-  // Without a flight controller, a program can also be there as a load beside others.
-  const bool had_to = info.controller || record.header.suts.size() == 1;
-  if (!nothing || !had_to) return "";
-  // One with Tether's library says itself that it has flown.
-  if (!info.controller && !info.as_is) {
-    warnings.push_back({Consequence::kDoubtful, {}, "UAV '" + info.uav + "'", kDidNothing});
+  if (!nothing) return "";
+  const bool is_alone = record.header.suts.size() == 1;
+  // One with Tether's library says itself that it has flown; and a program beside others can be
+  // there as a load.
+  if (!info.controller && (!info.as_is || !is_alone)) {
+    if (sut.finished && sut.reached_goal)
+      warnings.push_back({Consequence::kDoubtful, {}, "UAV '" + info.uav + "'", kDidNothing});
     return "";
   }
   if (!sut.finished) return "";

@@ -65,7 +65,9 @@ TEST_F(MakeResult, AProgramThatDoesNothingSaysNothingAboutItsComputer) {
   EXPECT_THAT(to_line(own_word.warnings.at(0)), HasSubstr("did nothing with it"));
   record.header.suts[0].as_is = true;
   record.header.suts.emplace_back().uav = "uav2";
-  EXPECT_NE(make(record, kReached).outcome, Outcome::kFailed) << "it can be a load beside another";
+  const TrialResult of_two = make(record, kReached);
+  EXPECT_NE(of_two.outcome, Outcome::kFailed) << "it can be a load beside another";
+  EXPECT_THAT(to_line(of_two.warnings.at(0)), HasSubstr("did nothing with it"));
 }
 
 TEST_F(MakeResult, AProgramThatBeganNoTaskOfItsMissionIsDoubtful) {

@@ -45,7 +45,7 @@ struct Speed {
     std::string loader{};  ///< of its libraries, which differs between architectures
     std::optional<int> pinned_core{};
     double idle_W = 0.0, busy_core_W = 0.0;  ///< of the computer; 0: energy is not simulated
-    int cores = 0;                           ///< as in record::SutInfo
+    int cores = 0;  ///< of this machine, to which it is bound; 0: all, or not known from a record
     friend bool operator==(const Program&, const Program&) = default;
   };
   std::vector<Program> programs{};  ///< in the record's order
