@@ -201,8 +201,8 @@ TETHER_IN_PLACE int bind(int socket, const sockaddr* address, socklen_t size) {
 
 TETHER_IN_PLACE int connect(int socket, const sockaddr* address, socklen_t size) {
   if (Agent* const any = tether::as_is::agent();
-      any && any->has_controller() && Port::is_controllers_stream(address, size) &&
-      type_of(socket) == SOCK_STREAM && !any->port().is_ours(socket)) {
+      any && Port::is_controllers_stream(address, size) && type_of(socket) == SOCK_STREAM &&
+      !any->port().is_ours(socket) && any->has_controller()) {
     const Inside inside;
     return any->port().connect_stream(socket, address, size);
   }

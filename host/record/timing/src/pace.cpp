@@ -195,10 +195,7 @@ std::string loader_of(const record::SutInfo& sut) {
 }
 
 Speed speed_of(const record::Header& header) {
-  Speed speed{.boards = header.boards,
-              .machine = header.machine,
-              .emulator = header.emulator,
-              .real_time_factor = header.real_time_factor};
+  Speed speed{.boards = header.boards, .machine = header.machine, .emulator = header.emulator};
   if (header.target) speed.target = header.target->name + " " + header.target->address;
   for (const record::SutInfo& sut : header.suts)
     speed.programs.push_back({.uav = sut.uav,

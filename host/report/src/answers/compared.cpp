@@ -80,7 +80,8 @@ std::string difference_of(const Compared& one, const Compared& other) {
                           &Speed::Program::cores))
     return "the number of its cores differs";
   // What a program does by a clock of the machine depends on how fast simulated time passes.
-  if (a.real_time_factor != b.real_time_factor) return "its real_time_factor differs";
+  if (one.flights.front()->real_time_factor != other.flights.front()->real_time_factor)
+    return "its real_time_factor differs";
   return "";
 }
 

@@ -50,9 +50,9 @@ TEST_F(MissReasons, AreSpeedIfAFasterConditionReachesTheGoal) {
   paces_[host]->radio = "radio=log_distance";
   expect_not_compared("its radio differs");
   paces_[host]->radio.clear();
-  paces_[host]->speed.real_time_factor = 0.3;
+  trials(host)[0].real_time_factor = 0.3;
   expect_not_compared("its real_time_factor differs");
-  paces_[host]->speed.real_time_factor = 0.0;
+  trials(host)[0].real_time_factor = trials(board)[0].real_time_factor;
   program(board).cores = 1;
   expect_not_compared("the number of its cores differs");
   program(board).cores = 0;

@@ -83,8 +83,6 @@ void fields(auto& io, Maybe<timing::Speed> auto& m) {
   io.some("boards", m.boards);
   io.some("machine", m.machine);
   io.some("target", m.target);
-  if (io.has("real_time_factor", m.real_time_factor > 0.0))
-    io("real_time_factor", m.real_time_factor);
 }
 
 /// Without the seed, which the result has.

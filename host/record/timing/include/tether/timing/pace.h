@@ -53,7 +53,6 @@ struct Speed {
   std::string machine{};  ///< empty: of a repeatable run, in which it does not matter
   std::string target{};   ///< its name and address
   record::EmulatorInfo emulator{};
-  double real_time_factor = 0.0;  ///< limit on ST per WT; 0: none
   friend bool operator==(const Speed&, const Speed&) = default;
 
   /// Whether the scenario sets how long each program computes.
