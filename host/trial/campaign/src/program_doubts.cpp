@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <map>
 #include <numeric>
 
 #include <fmt/format.h>
@@ -25,6 +26,23 @@ std::string refusal_of(const record::Record& record, const std::string& uav) {
     refusal += fields.value("text", "");
   }
   return refusal;
+}
+
+/// Whether the last answer to a request for a mode or a take-off was no.
+bool is_denied(const record::Record& record, const std::string& uav) {
+  constexpr int kAccepted = 0, kInProgress = 5;  // MAV_RESULT
+  constexpr int kTakeOff = 22, kSetMode = 176;   // MAV_CMD
+  std::map<int, int> answers;
+  for (const auto& logged : record.autopilot) {
+    const record::AutopilotMessage& m = logged.message;
+    if (m.uav != uav || !m.of_controller() || m.name != "COMMAND_ACK") continue;
+    const auto fields = nlohmann::json::parse(m.fields, nullptr, false);
+    if (fields.is_object()) answers[fields.value("command", 0)] = fields.value("result", kAccepted);
+  }
+  return std::ranges::any_of(answers, [&](const auto& answer) {
+    return (answer.first == kTakeOff || answer.first == kSetMode) && answer.second != kAccepted &&
+           answer.second != kInProgress;
+  });
 }
 
 constexpr const char* kDidNothing =
@@ -72,6 +90,11 @@ void check_companion(const record::Record& record, bool nothing, SutResult& sut,
   if (!said.empty())
     sut.outcome +=
         fmt::format("{}the flight controller said: {}", sut.outcome.empty() ? "" : "; ", said);
+  if (sut.reached_goal && is_denied(record, sut.uav))
+    doubt(
+        "has a program that says it reached its goal, but its last request for a mode or a "
+        "take-off was denied: " +
+        refusal_of(record, sut.uav));
   const record::GroundTruth *first = nullptr, *last = nullptr;
   bool has_moved = false, has_turned = false;
   for (const auto& logged : record.ground_truth) {

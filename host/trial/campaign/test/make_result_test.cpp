@@ -126,6 +126,14 @@ TEST_F(MakeResult, ACompanionHasFlownOnlyIfItHasSentSomething) {
   EXPECT_THAT(make(record, {{"uav1", false, "it gave up", "{}"}}).reason,
               HasSubstr("it gave up; the flight controller said: Arming denied: no fix"));
   EXPECT_THAT(make(record, kReached).reason, testing::Not(HasSubstr("Arming")));
+  record::AutopilotMessage& answer = record.autopilot.emplace_back().message;
+  answer.uav = "uav1";
+  answer.name = "COMMAND_ACK";
+  answer.fields = R"({"command": 176, "result": 2})";
+  EXPECT_THAT(to_line(make(record, kReached).warnings.at(0)),
+              HasSubstr("a take-off was denied: Arming denied: no fix"));
+  record.autopilot.push_back(record.autopilot.back());
+  record.autopilot.back().message.fields = R"({"command": 176, "result": 0})";
   record.ground_truth.push_back(record.ground_truth.back());
   record.ground_truth.back().message.p_WB_m[2] = 2.0;
   record.ground_truth.back().message.clearance_m = 1.5;

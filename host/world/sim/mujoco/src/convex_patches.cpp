@@ -183,8 +183,8 @@ void ConvexPatches::join(double tolerance_m) {
       patches_[old] = {.points = {}, .area_vector_m2 = {}, .is_alive = false};
     }
     std::ranges::sort(patch.neighbours);
-    const auto same = std::ranges::unique(patch.neighbours);
-    patch.neighbours.erase(same.begin(), same.end());
+    patch.neighbours.erase(std::unique(patch.neighbours.begin(), patch.neighbours.end()),
+                           patch.neighbours.end());
     for (const std::size_t other : patch.neighbours) patches_[other].neighbours.push_back(own);
     patches_.push_back(std::move(patch));
     --alive_;

@@ -47,8 +47,8 @@ class MeshFiles {
   /// @throws Error(kBadFile) as `load`, and for more than 1,000,000.
   std::vector<uav::Vec3> corners(const MeshGeometry& mesh) const;
 
-  /// The convex pieces of the mesh; `MeshGeometry::piece` selects one of them for `corners`.
-  const CollisionPieces& pieces(const MeshGeometry& mesh) const;
+  /// The convex pieces of the whole mesh; `MeshGeometry::piece` selects one of them for `corners`.
+  const CollisionPieces& pieces(const MeshGeometry& any) const;
 
  private:
   struct Imported;

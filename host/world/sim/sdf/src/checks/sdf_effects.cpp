@@ -132,6 +132,13 @@ bool is_as_without(const sdf::ElementPtr& element) {
   return is_same;
 }
 
+/// Whether a shape meets nothing in the simulator that the file was written for.
+bool meets_nothing(const sdf::ElementPtr& element) {
+  return element->GetName() == "contact" &&
+         (element->Get<unsigned int>("collide_bitmask", 1).first == 0 ||
+          element->Get<bool>("collide_without_contact", false).first);
+}
+
 }  // namespace
 
 bool is_in_static_model(const sdf::ElementPtr& element) {
@@ -151,6 +158,7 @@ Effect effect_without(const sdf::ElementPtr& element, SdfPurpose purpose) {
   if (is_unknown)
     return can_change(name.starts_with("tether:") ? Consequence::kNoEffect
                                                   : Consequence::kBehavesDifferent);
+  if (meets_nothing(element)) return can_change(Consequence::kBehavesDifferent);
   Effect effect = Consequence::kNoEffect;
   if (const auto of_element = kEffectOfElement.find(name); of_element != kEffectOfElement.end())
     effect = of_element->second;
