@@ -115,7 +115,8 @@ TEST_F(Tokens, OfARunUnderTetherExecAreSeenByNobody) {
 }
 
 TEST_F(Tokens, OfACampaignAreNewForEachTrial) {
-  write_hover_scenario(folder_.path(), "good");
+  write_hover_scenario(folder_.path(), "good",
+                       {{"clock = \"cpu\"", "clock = \"cpu\"\nreal_time_factor = 2.0"}});
   const auto campaign = write_campaign(folder_.path(), 1);
   const Watched watched =
       watch(with(tether({"campaign", campaign, "--out", folder_ / "out"}, mark_), {},
