@@ -194,11 +194,10 @@ void ConvexPatches::join(double tolerance_m) {
 }
 
 std::vector<std::vector<Vec3>> ConvexPatches::points() const {
-  constexpr double kHalf_m = 1e-3;
   std::vector<std::vector<Vec3>> all;
   for (const Patch& patch : patches_) {
     if (!patch.is_alive) continue;
-    const Vec3 shift = (kHalf_m / norm(patch.area_vector_m2)) * patch.area_vector_m2;
+    const Vec3 shift = (kHalfThickness_m / norm(patch.area_vector_m2)) * patch.area_vector_m2;
     std::vector<Vec3>& thick = all.emplace_back();
     for (const Vec3& p : patch.points) {
       thick.push_back(p - shift);

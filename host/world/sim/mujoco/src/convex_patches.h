@@ -10,6 +10,9 @@
 
 namespace tether::sim {
 
+/// Of what has no thickness of its own: so far on both sides of it.
+inline constexpr double kHalfThickness_m = 1e-3;
+
 /// The corners of a triangle, counter-clockwise as seen from outside.
 using Triangle = std::array<uav::Vec3, 3>;
 

@@ -29,7 +29,7 @@ constexpr std::size_t kMostTrianglesInPieces = 300'000;
 /// The shifts that give points a thickness: none if their hull has one; along their normal if they
 /// lie in a plane; to the corners of a cube if they lie on a line. @pre There are points.
 std::vector<Vec3> thickness_of(const std::vector<Vec3>& points) {
-  constexpr double kHalf_m = 1e-3, kThin_m = 1e-3, kLine = 1e-6;
+  constexpr double kHalf_m = kHalfThickness_m, kThin_m = 1e-3, kLine = 1e-6;
   const auto most = [&](const auto& measure) {
     return *std::ranges::max_element(points, {}, measure);
   };

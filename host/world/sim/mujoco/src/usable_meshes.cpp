@@ -2,6 +2,7 @@
 
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -49,8 +50,8 @@ class UsableMeshes {
 };
 
 // None: not a mesh, or one that cannot be read, which is refused later.
-std::vector<std::vector<uav::Vec3>> pieces_of(const Collision& collision,
-                                              const MeshFiles& meshes) try {
+std::span<const std::vector<uav::Vec3>> pieces_of(const Collision& collision,
+                                                  const MeshFiles& meshes) try {
   const auto* mesh = std::get_if<MeshGeometry>(&collision.geometry);
   if (mesh == nullptr) return {};
   return meshes.pieces(*mesh).corners;
@@ -77,7 +78,7 @@ void split_collisions(World& world, const MeshFiles& meshes) {
     for (Link& link : model.links) {
       std::vector<Collision> all;
       for (const Collision& collision : link.collisions) {
-        const std::vector<std::vector<uav::Vec3>> pieces = pieces_of(collision, meshes);
+        const std::span<const std::vector<uav::Vec3>> pieces = pieces_of(collision, meshes);
         if (pieces.empty()) all.push_back(collision);
         for (std::size_t i = 0; i < pieces.size(); ++i) {
           Collision& piece = all.emplace_back(collision);
