@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include <tether/base/text_table.h>
 #include <tether/base/units.h>
 #include <tether/uav/path.h>
 
@@ -67,6 +68,12 @@ std::string complaint_about(const Path& path) {
       all, [](const Waypoint& a, const Waypoint& b) { return a.at >= b.at; });
   if (late != all.end()) return "has waypoints whose times do not increase";
   if (all.front().at < Duration{0}) return "has a waypoint before 0 s";
+  const auto is_jump = [](const Waypoint& a, const Waypoint& b) {
+    return norm(b.p_m - a.p_m) > kFastest_m_s * to_seconds(b.at - a.at);
+  };
+  if (const auto jump = std::ranges::adjacent_find(all, is_jump); jump != all.end())
+    return "goes from its waypoint at " + fixed(to_seconds(jump->at), 3) +
+           " s to the next one faster than " + fixed(kFastest_m_s, 0) + " m/s";
   if (!path.repeats) return {};
   const Four way = value_of(all.back()) - value_of(all.front());
   constexpr double kSame = 1e-9;

@@ -24,6 +24,8 @@ constexpr double kTouching_m = 1e-3;
 /// What a UAV leaves when it is lifted by this, it stands on.
 constexpr double kLift_m = 0.02;
 constexpr double kMostLift_m = 1.0;
+/// So far below everything, nothing holds a UAV any more.
+constexpr double kFallen_m = 0.5;
 constexpr double kFarFromAnchors_m = 50.0;
 /// More than distances are rounded by.
 constexpr double kRounding_m = 1e-6;
@@ -91,6 +93,8 @@ ClearanceMeter::ClearanceMeter(const World& world, const MeshVertices& vertices)
   }
   of_bodies_.resize(starts_.size());
   last_nearest_.resize(starts_.size());
+  has_fallen_.resize(world.uavs.size());
+  lowest_m_ = lowest_m();
 }
 
 ClearanceMeter::~ClearanceMeter() = default;
@@ -246,6 +250,36 @@ void ClearanceMeter::warn_of_starts(const WarningSink& warn) const {
       warn_that("starts " + std::to_string(std::lround(norm(nearest->X_WA.p - p_WB))) +
                 " m from the nearest anchor, '" + nearest->anchor.name +
                 "'; check its position_m and the anchor's");
+  }
+}
+
+// −∞: something reaches down for ever, there is nothing, or not all of it is known.
+double ClearanceMeter::lowest_m() const {
+  double lowest_m = kInfinity;
+  for (const Shape& shape : shapes_) {
+    if (shape.body) continue;
+    const Vec3 down{0.0, 0.0, -1.0};
+    if (!shape.plane_normal_S)
+      lowest_m = std::min(lowest_m, support_point(shape.at(shape.X_BS), down).z);
+    else if (rotate(shape.X_BS.q, *shape.plane_normal_S).z > 1.0 - kRounding_m)
+      lowest_m = std::min(lowest_m, shape.X_BS.p.z);
+    else
+      return -kInfinity;
+  }
+  if (lowest_m == kInfinity || !is_complete_) return -kInfinity;
+  for (std::size_t i = 0; i < world_.uavs.size(); ++i)
+    lowest_m = std::min(lowest_m, starts_[i].p.z);
+  return lowest_m;
+}
+
+void ClearanceMeter::warn_of_falls(std::span<const Pose> X_WB, const WarningSink& warn) {
+  for (std::size_t i = 0; i < world_.uavs.size(); ++i) {
+    if (has_fallen_[i] || X_WB[i].p.z > lowest_m_ - kFallen_m) continue;
+    has_fallen_[i] = true;
+    warn({Consequence::kDoubtful,
+          {},
+          "UAV '" + world_.uavs[i].name + "'",
+          "falls below all that the world has, as beside the edge of its floor"});
   }
 }
 

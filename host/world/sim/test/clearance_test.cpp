@@ -152,5 +152,16 @@ const std::vector<StartCase> kStartCases = {
 INSTANTIATE_TEST_SUITE_P(Starts, StartWarningTest, ::testing::ValuesIn(kStartCases),
                          [](const auto& named) { return named.param.name; });
 
+TEST(ClearanceMeter, WarnsOnceOfAUavThatFallsBelowTheWorld) {
+  const World world = world_at({0.0, 0.0, 1.0});
+  std::vector<std::string> warnings;
+  ClearanceMeter meter(world, {});
+  for (const double z_m : {1.0, -0.5, -0.7, -2.0, 1.0, -2.0}) {
+    meter.warn_of_falls(std::vector<uav::Pose>{{{30.0, 0.0, z_m}, {}}},
+                        [&](const Warning& w) { warnings.push_back(to_line(w)); });
+    EXPECT_EQ(warnings.size(), z_m <= -0.7 || !warnings.empty() ? 1U : 0U) << z_m;
+  }
+}
+
 }  // namespace
 }  // namespace tether::sim

@@ -29,6 +29,10 @@ struct Path {
   friend bool operator==(const Path&, const Path&) = default;
 };
 
+/// Faster, it would jump past what it should meet. Of the chords: a spline goes up to three times
+/// as fast on its way.
+inline constexpr double kFastest_m_s = 100.0;
+
 /// What is wrong with a path, for a person: "needs two waypoints or more". Empty: nothing.
 std::string complaint_about(const Path& path);
 

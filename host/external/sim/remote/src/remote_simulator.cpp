@@ -33,7 +33,7 @@ constexpr Duration kLongestAdvance = std::chrono::milliseconds(50);
 class RemoteSimulator final : public Simulator {
  public:
   RemoteSimulator(World world, std::unique_ptr<protocol::Connection> connection,
-                  RemoteOptions options, const WarningSink& warn)
+                  RemoteOptions options, WarningSink warn)
       : world_(std::move(world)),
         grid_(world_.step),
         session_(std::move(connection), std::move(options)),
@@ -41,18 +41,19 @@ class RemoteSimulator final : public Simulator {
         recorder_(world_),
         meter_(world_, {}),
         sensors_(world_, back_end(), warn),
-        commands_(world_.uavs.size()) {
-    protocol::Opened opened = session_.open(make_open(world_, warn));
+        commands_(world_.uavs.size()),
+        warn_(std::move(warn)) {
+    protocol::Opened opened = session_.open(make_open(world_, warn_));
     description_ = printable(opened.description);
     reports_contacts_ = opened.reports_contacts;
     takes_setpoints_ = opened.takes_setpoints;
-    meter_.warn_of_starts(warn);
+    meter_.warn_of_starts(warn_);
     session_.set_name(description_);
     if (!takes_setpoints_)
-      warn({Consequence::kNoEffect,
-            {},
-            "simulator",
-            "takes velocities in the heading frame only; other set-points are refused"});
+      warn_({Consequence::kNoEffect,
+             {},
+             "simulator",
+             "takes velocities in the heading frame only; other set-points are refused"});
     start_at(std::move(opened.state));
   }
 
@@ -69,6 +70,7 @@ class RemoteSimulator final : public Simulator {
   void advance_to(SimTime t) override {
     check_target(t);
     while (now() < t) advance_piece(std::min(t, now() + longest_advance()));
+    meter_.warn_of_falls(X_WB_, warn_);
   }
 
   bool takes_setpoints() const override { return takes_setpoints_; }
@@ -202,6 +204,7 @@ class RemoteSimulator final : public Simulator {
   std::string description_;
   /// Not sent yet.
   std::vector<std::optional<uav::Setpoint>> commands_;
+  WarningSink warn_;
   Snapshot between_;  // reused
   protocol::State state_;
   std::vector<uav::Pose> X_WB_;

@@ -58,6 +58,8 @@ TEST(ReadMotion, RefusesWhatCannotMove) {
   };
   const std::string start = "[[moving]]\nmodel = \"cart\"\nwaypoint = [ { at_s = 1, ";
   EXPECT_THAT(problem(start + "offset_m = [0, 0, 0] } ]"), HasSubstr("two waypoints"));
+  EXPECT_THAT(problem(start + "offset_m = [0, 0, 0] }, { at_s = 1.001, offset_m = [5, 0, 0] } ]"),
+              HasSubstr("goes from its waypoint at 1.000 s to the next one faster than 100 m/s"));
   EXPECT_THAT(problem(start + "offset_m = [0, 0] } ]"), HasSubstr("offset_m"));
   EXPECT_THAT(problem(start + "offset_m = [nan, 0, 0] } ]"), HasSubstr("offset_m"));
   EXPECT_THAT(problem(std::string(kMoving) + kMoving), HasSubstr("another [[moving]]"));

@@ -4,11 +4,36 @@
 #include "physics_model.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include <tether/base/error.h>
 
 namespace tether::sim {
+namespace {
+
+Error unstable(Duration step) {
+  return {ErrorCode::kSetup,
+          "the simulated motion became unstable: check masses and inertias, or use a shorter step "
+          "than " +
+              std::to_string(to_seconds(step)) + " s"};
+}
+
+// Half of how thick one of the engine's shapes is where it is thinnest.
+double half_thickness_m(const mjModel& model, int geom) {
+  const mjtNum* const size = model.geom_size + 3 * geom;
+  switch (model.geom_type[geom]) {
+    case mjGEOM_SPHERE:
+    case mjGEOM_CAPSULE:
+      return size[0];
+    case mjGEOM_CYLINDER:
+      return std::min(size[0], size[1]);
+    default:  // half of the lengths of a box, an ellipsoid or a mesh
+      return std::min({size[0], size[1], size[2]});
+  }
+}
+
+}  // namespace
 
 Dynamics::Dynamics(const World& world, const WarningSink& warn, const MeshFiles& meshes)
     : world_(world),
@@ -30,6 +55,12 @@ Dynamics::Dynamics(const World& world, const WarningSink& warn, const MeshFiles&
   const std::vector<MovingBody> bodies = moving_bodies(world);
   for (std::size_t i = 0; i < bodies.size(); ++i)
     if (bodies[i].model && bodies[i].model->path) driven_.emplace_back(i, bodies[i]);
+  for (int geom = 0; geom < model_->ngeom; ++geom) {
+    const int uav = model_->geom_bodyid[geom] - engine_body(0);
+    if (uav < 0 || uav >= static_cast<int>(flights_.size())) continue;
+    double& thickest_m = flights_[static_cast<std::size_t>(uav)].half_thickness_m;
+    thickest_m = std::max(thickest_m, half_thickness_m(*model_, geom));
+  }
   reset(0);
 }
 
@@ -46,7 +77,7 @@ void Dynamics::reset(std::uint64_t seed) {
   }
   now_ = SimTime{};
   for (std::size_t i = 0; i < flights_.size(); ++i) carry(i);
-  place_driven();
+  place_driven(now_);
   read_engine();
   recorder_.reset(X_WB_);
   contacts_.reset();
@@ -61,23 +92,51 @@ void Dynamics::step() {
   recorder_.begin_step(X_WB_);
   for (std::size_t i = 0; i < flights_.size(); ++i) carry(i);
   for (std::size_t i = 0; i < flights_.size(); ++i) fly(i);
+  const std::int64_t parts = parts_of_step();
+  model_->opt.timestep = to_seconds(world_.step) / static_cast<double>(parts);
+  const SimTime end = now_ + world_.step;
+  for (std::int64_t part = 0; part < parts; ++part)
+    step_engine(now_ + world_.step * part / parts, now_ + world_.step * (part + 1) / parts,
+                part == 0 ? now_ : end);
+  now_ = end;
+}
+
+// In one part, no UAV may move by more than half its thickness: it would pass what it should meet,
+// or be pushed out at the far side.
+std::int64_t Dynamics::parts_of_step() const {
+  double driven_m = 0.0;
+  for (const auto& [i, body] : driven_)
+    driven_m =
+        std::max(driven_m, uav::norm(driven_state(body, now_ + world_.step).X_WB.p - X_WB_[i].p));
+  double parts = 1.0;
+  for (std::size_t i = 0; i < flights_.size(); ++i) {
+    if (flights_[i].half_thickness_m <= 0.0) continue;  // it meets nothing
+    const double own_m = uav::norm(motions_[i].v_WB_W) * to_seconds(world_.step);
+    parts = std::max(parts, std::ceil((own_m + driven_m) / flights_[i].half_thickness_m));
+  }
+  constexpr double kMostParts = 100'000.0;
+  if (parts <= kMostParts) return static_cast<std::int64_t>(parts);
+  throw unstable(world_.step);
+}
+
+// @param seen_at the boundary of steps that contacts of this part belong to
+void Dynamics::step_engine(SimTime from, SimTime until, SimTime seen_at) {
   std::copy_n(data_->qvel, qvel_before_.size(), qvel_before_.begin());
   mj_step1(model_.get(), data_.get());
   for (std::size_t i = 0; i < flights_.size(); ++i) apply_rotors(i);
-  drive();
+  drive(from);
   mj_step2(model_.get(), data_.get());
   check_engine();
-  log_contacts();
-  now_ += world_.step;
-  place_driven();
+  log_contacts(seen_at);
+  place_driven(until);
   read_engine();
 }
 
-// Puts driven bodies where they are at `now_`, with their velocities, so that what stands on them
+// Puts driven bodies where they are at a time, with their velocities, so that what stands on them
 // is carried along.
-void Dynamics::place_driven() {
+void Dynamics::place_driven(SimTime at) {
   for (const auto& [i, body] : driven_) {
-    const DrivenState state = driven_state(body, now_);
+    const DrivenState state = driven_state(body, at);
     mjtNum* qvel = data_->qvel + qvel_address(i);
     copy_to(state.X_WB, data_->qpos + qpos_address(i));
     copy_to(state.v_WB, qvel);
@@ -85,20 +144,20 @@ void Dynamics::place_driven() {
   }
 }
 
-// The forces that make the engine accelerate driven bodies as they do during this step: whatever
+// The forces that make the engine accelerate driven bodies as they do from then on: whatever
 // touches them is pushed by their true motion.
-void Dynamics::drive() {
+void Dynamics::drive(SimTime from) {
   for (const auto& [i, body] : driven_) {
-    const DrivenState state = driven_state(body, now_);
+    const DrivenState state = driven_state(body, from);
     mjtNum* force = data_->qfrc_applied + qvel_address(i);
     copy_to(kDrivenMass_kg * (state.a_WB + felt_at_rest(world_)), force);
     copy_to(kDrivenMass_kg * rotate(inverse(state.X_WB.q), state.alpha_WB_W), force + 3);
   }
 }
 
-// The engine has found the contacts at the beginning of the step, where X_WB_ still is. Its solver
+// The engine has found the contacts at the beginning of its step, where X_WB_ still is. Its solver
 // has acted since, so that the speed of an impact is that of before.
-void Dynamics::log_contacts() {
+void Dynamics::log_contacts(SimTime seen_at) {
   const auto uavs = static_cast<int>(flights_.size());
   for (int i = 0; i < data_->ncon; ++i) {
     const mjContact& contact = data_->contact[i];
@@ -111,7 +170,7 @@ void Dynamics::log_contacts() {
       const int uav = bodies[own] - engine_body(0);
       if (uav < 0 || uav >= uavs) continue;
       const int other = shapes[1 - own];
-      contacts_.add({now_, static_cast<std::size_t>(uav),
+      contacts_.add({seen_at, static_cast<std::size_t>(uav),
                      shapes_[static_cast<std::size_t>(other)].owner, other, speed_m_s});
     }
   }
@@ -177,11 +236,7 @@ void Dynamics::check_engine() const {
   const mjWarningStat* warnings = data_->warning;
   const int bad = warnings[mjWARN_BADQPOS].number + warnings[mjWARN_BADQVEL].number +
                   warnings[mjWARN_BADQACC].number;
-  if (bad == 0) return;
-  throw Error(ErrorCode::kSetup,
-              "the simulated motion became unstable: check masses and inertias, or use a shorter "
-              "step than " +
-                  std::to_string(to_seconds(world_.step)) + " s");
+  if (bad > 0) throw unstable(world_.step);
 }
 
 bool Dynamics::contacts_dropped() const {

@@ -68,6 +68,7 @@ class MujocoSimulator final : public Simulator {
       now_ += grid_.dt();
     }
     stepping_ += timer.elapsed();
+    dynamics_.warn_of_falls(warn_);
     warn_once_about_contacts();
   }
 

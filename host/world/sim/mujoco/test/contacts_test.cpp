@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include <tether/sim_mujoco/mujoco_simulator.h>
+
 // What the embedded simulator reports of its contacts.
 namespace tether::sim {
 namespace {
@@ -111,6 +113,35 @@ TEST(MujocoContactsTest, StopAUavThatFalls) {
     EXPECT_LT(hit_m_s, fall_m_s + 0.1);
     EXPECT_LT(fastest_m_s, fall_m_s + 0.1);
     EXPECT_LT(sunk_m, 0.04);
+  }
+}
+
+// A roof of 5 cm, between two instants of a fall that are up to half a metre apart; and a wall that
+// is as fast.
+TEST(MujocoContactsTest, NothingIsPassedUnseenHoweverLongTheStep) {
+  for (const Duration step : {1ms, 5ms, 20ms}) {
+    SCOPED_TRACE(to_seconds(step));
+    World world = test_world();
+    world.step = step;
+    world.models.push_back(box_model("roof", {0.0, 0.0, 4.0}, {9.0, 9.0, 0.05}, {1.0, 1.0, 1.0}));
+    world.uavs[0].X_WB.p = {0.0, 0.0, 40.0};
+    Model wall = box_model("wall", {-5.0, 20.0, 4.5}, {0.05, 3.0, 9.0}, {1.0, 1.0, 1.0});
+    wall.is_static = false;
+    wall.path = DrivenPath{{{{1s, {}, 0.0}, {1500ms, {15.0, 0.0, 0.0}, 0.0}}}, {}};
+    world.models.push_back(wall);
+    world.uavs.push_back(test_uav("hovers", {0.0, 20.0, 4.0}));
+    const WarningSink of_falls = [](const Warning&) {};  // what is hit so hard goes through
+    const auto simulator = prepare_mujoco_simulator(world, of_falls)(of_falls, 0);
+    uav::Setpoint falls;
+    falls.mask = uav::kRotorSpeeds;
+    falls.rotor_speeds_rad_s.assign(world.uavs[0].airframe.rotors.size(), 0.0);
+    simulator->apply(0, falls);
+    simulator->advance_to(SimTime(4s));
+    std::map<std::string, double> hardest_m_s;
+    for (const Contact& contact : simulator->take_contacts())
+      hardest_m_s[contact.with] = std::max(hardest_m_s[contact.with], contact.speed_m_s);
+    EXPECT_GT(hardest_m_s["roof"], 15.0);
+    EXPECT_GT(hardest_m_s["wall"], 20.0);
   }
 }
 

@@ -48,6 +48,8 @@ class ClearanceMeter {
   /// Warns of each UAV that starts inside or touching something (standing on it is fine), below the
   /// floor, or far from every anchor.
   void warn_of_starts(const WarningSink& warn) const;
+  /// Warns once of each UAV that is below all that the world has, as beside the edge of its floor.
+  void warn_of_falls(std::span<const uav::Pose> X_WB, const WarningSink& warn);
 
  private:
   struct Shape;
@@ -63,6 +65,7 @@ class ClearanceMeter {
   std::span<const uav::Vec3> vertices_of(const MeshGeometry& mesh, const MeshVertices& vertices);
   void find_nearest(const Shape& own, std::span<const uav::Pose> X_WB, std::size_t first,
                     Nearest& nearest) const;
+  double lowest_m() const;
   static double distance_between(const Convex& here, const Ball& around, const Shape& other,
                                  std::span<const uav::Pose> X_WB, double enough_m);
   std::string_view shape_overhead(const uav::Vec3& p_W) const;
@@ -76,6 +79,8 @@ class ClearanceMeter {
   /// depend on it.
   mutable std::vector<std::size_t> last_nearest_;
   std::vector<uav::Pose> starts_;
+  double lowest_m_ = 0.0;  ///< of all fixed shapes and the starts of UAVs
+  std::vector<bool> has_fallen_;
   bool is_complete_ = true;
 };
 
