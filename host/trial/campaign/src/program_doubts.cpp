@@ -48,9 +48,9 @@ bool is_denied(const record::Record& record, const std::string& uav) {
 constexpr const char* kDidNothing =
     "has a program that did nothing with it: no sensor was read, and nothing sent";
 
-/// Whether a program neither read nor sent anything. One with a flight controller also receives
+/// How many times a program read or sent something. One with a flight controller also receives
 /// whenever it waits, whether it listens or not.
-bool did_nothing(const record::Record& record, const record::SutInfo& sut) {
+std::ptrdiff_t calls_of(const record::Record& record, const record::SutInfo& sut) {
   const auto is_sent = [&](const auto& logged) {
     return logged.message.uav == sut.uav && logged.message.to_controller;
   };
@@ -59,15 +59,36 @@ bool did_nothing(const record::Record& record, const record::SutInfo& sut) {
     return logged.message.uav == sut.uav && kind != record::kFinish && kind != record::kSleep &&
            !(kind == record::kReceive && sut.controller);
   };
-  return std::ranges::none_of(record.autopilot, is_sent) &&
-         std::ranges::none_of(record.interactions, is_call);
+  return std::ranges::count_if(record.autopilot, is_sent) +
+         std::ranges::count_if(record.interactions, is_call);
+}
+
+constexpr double kAway_m = 0.2;
+struct Motion {
+  const record::GroundTruth *first = nullptr, *last = nullptr;
+  bool has_moved = false, has_turned = false;
+};
+Motion motion_of(const record::Record& record, const std::string& uav) {
+  constexpr double kHardlyTurned = 0.99966;  // cosine of 1.5 degrees, half the angle
+  Motion motion;
+  for (const auto& logged : record.ground_truth) {
+    if (logged.message.uav != uav) continue;
+    motion.last = &logged.message;
+    if (motion.first == nullptr) motion.first = motion.last;
+    const record::GroundTruth &first = *motion.first, &last = *motion.last;
+    double square_m2 = 0.0;
+    for (std::size_t i = 0; i < 3; ++i) square_m2 += std::pow(last.p_WB_m[i] - first.p_WB_m[i], 2);
+    motion.has_moved |= square_m2 > kAway_m * kAway_m;
+    const double cosine = std::inner_product(std::begin(last.q_WB), std::end(last.q_WB),
+                                             std::begin(first.q_WB), 0.0);  // of half the angle
+    motion.has_turned |= std::abs(cosine) < kHardlyTurned;
+  }
+  return motion;
 }
 
 /// As check_program, of a program with a flight controller.
 void check_companion(const record::Record& record, bool nothing, SutResult& sut,
                      std::vector<Warning>& warnings) {
-  constexpr double kAway_m = 0.2;
-  constexpr double kHardlyTurned = 0.99966;  // cosine of 1.5 degrees, half the angle
   const auto is_sent = [&](const auto& logged) {
     const record::AutopilotMessage& m = logged.message;
     return m.uav == sut.uav && m.to_controller && m.outcome == record::kDelivered &&
@@ -95,20 +116,7 @@ void check_companion(const record::Record& record, bool nothing, SutResult& sut,
         "has a program that says it reached its goal, but its last request for a mode or a "
         "take-off was denied: " +
         refusal_of(record, sut.uav));
-  const record::GroundTruth *first = nullptr, *last = nullptr;
-  bool has_moved = false, has_turned = false;
-  for (const auto& logged : record.ground_truth) {
-    if (logged.message.uav != sut.uav) continue;
-    last = &logged.message;
-    if (first == nullptr) first = last;
-    double square_m2 = 0.0;
-    for (std::size_t i = 0; i < 3; ++i)
-      square_m2 += std::pow(last->p_WB_m[i] - first->p_WB_m[i], 2);
-    has_moved |= square_m2 > kAway_m * kAway_m;
-    const double cosine = std::inner_product(std::begin(last->q_WB), std::end(last->q_WB),
-                                             std::begin(first->q_WB), 0.0);  // of half the angle
-    has_turned |= std::abs(cosine) < kHardlyTurned;
-  }
+  const auto [first, last, has_moved, has_turned] = motion_of(record, sut.uav);
   if (!has_sent) return doubt("has a flight controller to which its program sent no message");
   const bool began_in_air = first != nullptr && first->clearance_m && *first->clearance_m > kAway_m;
   if (!has_moved && !(began_in_air && has_turned))
@@ -127,8 +135,21 @@ void check_companion(const record::Record& record, bool nothing, SutResult& sut,
 
 std::string check_program(const record::Record& record, const record::SutInfo& info, SutResult& sut,
                           std::vector<Warning>& warnings) {
-  const bool nothing = did_nothing(record, info);
-  if (info.controller) check_companion(record, nothing, sut, warnings);
+  constexpr std::ptrdiff_t kHardlyAny = 5;
+  const std::ptrdiff_t calls = calls_of(record, info);
+  const bool nothing = calls == 0;
+  if (info.controller)
+    check_companion(record, nothing, sut, warnings);
+  else if (!nothing && calls < kHardlyAny && sut.finished && sut.reached_goal)
+    if (const Motion motion = motion_of(record, info.uav);
+        motion.first != nullptr && !motion.has_moved && !motion.has_turned)
+      warnings.push_back(
+          {Consequence::kDoubtful,
+           {},
+           "UAV '" + info.uav + "'",
+           fmt::format("never left its start, and has a program that did hardly anything with it: "
+                       "{} call{}",
+                       calls, calls > 1 ? "s" : "")});
   if (!nothing) return "";
   const bool is_alone = record.header.suts.size() == 1;
   // One with Tether's library says itself that it has flown; and a program beside others can be

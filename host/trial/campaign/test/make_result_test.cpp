@@ -70,6 +70,17 @@ TEST_F(MakeResult, AProgramThatDoesNothingSaysNothingAboutItsComputer) {
   EXPECT_THAT(to_line(of_two.warnings.at(0)), HasSubstr("did nothing with it"));
 }
 
+TEST_F(MakeResult, AProgramThatHardlyDidAnythingAndDidNotMoveIsDoubtful) {
+  record::Record record = finished_record();
+  EXPECT_THAT(to_line(make(record, kReached).warnings.at(0)), HasSubstr("did hardly anything"));
+  record.ground_truth.push_back(record.ground_truth.front());
+  record.ground_truth.back().message.p_WB_m[0] += 1.0;
+  EXPECT_TRUE(make(record, kReached).warnings.empty()) << "it has flown";
+  record.ground_truth.pop_back();
+  for (int i = 0; i < 9; ++i) record.interactions.push_back(record.interactions.back());
+  EXPECT_TRUE(make(record, kReached).warnings.empty()) << "its goal may be to hover and look";
+}
+
 TEST_F(MakeResult, AProgramThatBeganNoTaskOfItsMissionIsDoubtful) {
   const auto file = scratch_.write("mission.toml", "[[task]]\ntask = \"search\"\n");
   scenario::Scenario scenario = scenario_;
@@ -79,6 +90,7 @@ TEST_F(MakeResult, AProgramThatBeganNoTaskOfItsMissionIsDoubtful) {
   const auto doubts = [&] {
     return make_result(scenario, scenario.conditions[1], record, kReached).warnings;
   };
+  for (int i = 0; i < 9; ++i) record.interactions.push_back(record.interactions.back());
   EXPECT_THAT(to_line(doubts().at(0)), HasSubstr("began no task of its mission"));
   record.header.suts[0].as_is = true;
   EXPECT_TRUE(doubts().empty()) << "such a program does not tell its tasks";
