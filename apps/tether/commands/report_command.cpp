@@ -38,7 +38,7 @@ struct ReportOptions {
   std::filesystem::path out;
 };
 
-constexpr const char* kHtml = "html";
+constexpr const char *kHtml = "html", *kJson = "json";
 
 bool is_run(const std::filesystem::path& folder) {
   return !std::filesystem::exists(folder / campaign::kCampaignFile) &&
@@ -134,6 +134,7 @@ std::string rendered(const ReportOptions& options) {
   if (options.format == "summary-csv") return to_csv(report::summaries_table(results));
   const bool is_markdown = options.format == "markdown";
   const std::vector<report::Verdict> verdicts = report::verdicts_of(results);
+  if (options.format == kJson) return report::verdicts_json(verdicts);
   std::vector<report::Table> tables = run ? run_tables(results) : report::report_tables(results);
   std::vector<report::Table> first;
   for (const auto& points : report::by_scenario(verdicts)) {
@@ -173,8 +174,8 @@ Options report_rows(ReportOptions& o) {
   return {{"folder", "Folder of a campaign or a run", &o.folder, required()},
           {"--format",
            "text, markdown, csv (one row per trial and metric), summary-csv (one row per condition "
-           "and metric), or html (one self-contained page; needs gnuplot)",
-           &o.format, one_of({"text", "markdown", "csv", "summary-csv", kHtml})},
+           "and metric), json (the answers), or html (one self-contained page; needs gnuplot)",
+           &o.format, one_of({"text", "markdown", "csv", "summary-csv", kJson, kHtml})},
           {"--out FILE", "File to write [standard output; for html, report.html in the folder]",
            &o.out}};
 }

@@ -113,7 +113,9 @@ int run_and_print(const RunOptions& options, const runner::TrialRequest& request
     os::write_file_atomically(options.junit,
                               report::to_junit(report::results_of_run(result), spec.folder));
   if (options.json)
-    fmt::print("{}\n", campaign::to_json(result));
+    fmt::print("{}\n",
+               report::with_answer(campaign::to_json(result),
+                                   report::verdicts_of(report::results_of_run(result)).front()));
   else if (!options.quiet)
     print(report::run_text(result, spec.folder, markup_of_stdout()));
   // A person has read the reason on the same terminal.
@@ -219,7 +221,7 @@ Options run_rows(RunOptions& o) {
          "board must then decrypt every image",
          &o.request.uses_tunnel},
         {"--images", "Record the camera images that the SUT reads", &o.request.record_images},
-        {"--json", "Print result.json instead of a summary", &o.json},
+        {"--json", "Print result.json with the answer, instead of a summary", &o.json},
         junit_option(o.junit)},
        program_rows(o.program),
        reading_options(o.reading),

@@ -90,7 +90,9 @@ void add_trial_problems(std::vector<std::string>& lines, const std::string& wher
   }
   if (has_crash(trial)) lines.push_back(fmt::format("{}: {}", which, trial.reason));
   for (const campaign::MetricValue& metric : trial.metrics) {
-    if (!metric.value)
+    // Of a missed task, there is nothing to measure.
+    if (!metric.value &&
+        (trial.outcome == campaign::Outcome::kGoalReached || !missed_without_value(trial).empty()))
       lines.push_back(fmt::format("{}: no value of {}: {}", which, in_a_sentence(metric.label),
                                   metric.missing_because));
   }

@@ -55,14 +55,15 @@ std::string than(double slowdown) {
   return slowdown < 1.0 ? "of" : "than";
 }
 
+bool has_warning(const SizedCondition& sized, bool (*is)(const Warning&)) {
+  return std::ranges::any_of(
+      sized.trials, [&](const auto& trial) { return std::ranges::any_of(trial.warnings, is); });
+}
+
 /// What the first words must say of the flights on which they rest.
 std::string reservation(const SizedCondition& sized) {
-  const auto has = [&](bool (*is)(const Warning&)) {
-    return std::ranges::any_of(
-        sized.trials, [&](const auto& trial) { return std::ranges::any_of(trial.warnings, is); });
-  };
-  if (has(is_left_out)) return std::string(kNotAsWritten) + ";";
-  return has(is_doubtful) ? std::string(kDoubtful) + ";" : ",";
+  if (has_warning(sized, is_left_out)) return std::string(kNotAsWritten) + ";";
+  return has_warning(sized, is_doubtful) ? std::string(kDoubtful) + ";" : ",";
 }
 
 /// Whether the answer is above slowdowns that fail.
@@ -210,8 +211,12 @@ Answer board_answer(const Board& board, const SizeReport& report) {
   const std::string name = fmt::format("{} ({} ×)", board.name, digits(board.slowdown));
   switch (verdict(board, report)) {
     case BoardVerdict::kSuffices:
-      return {"Fast enough", fmt::format(": {} has {}{} × headroom.", name,
-                                         answer.is_above ? "at least " : "", digits(headroom))};
+      return {has_warning(report.synchronised, is_doubtful) ? "Doubtful whether fast enough"
+              : has_warning(report.synchronised, is_left_out)
+                  ? std::string("Fast enough") + kNotAsWritten
+                  : "Fast enough",
+              fmt::format(": {} has {}{} × headroom.", name, answer.is_above ? "at least " : "",
+                          digits(headroom))};
     case BoardVerdict::kDoesNot:
       return {"Not fast enough",
               fmt::format(": {} is {}{} × too slow.", name, answer.is_below ? "more than " : "",

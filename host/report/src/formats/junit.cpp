@@ -32,7 +32,8 @@ struct Case {
 
 struct Suite {
   std::string name;
-  std::string started_at = "1970-01-01T00:00:00";  ///< without a zone, as the schema wants it
+  /// Now, unless it is known; without a zone, as the schema wants it.
+  std::string started_at = os::utc_now().substr(0, std::string_view("1970-01-01T00:00:00").size());
   std::string machine = "unknown";
   std::vector<std::pair<std::string, std::string>> properties{};
   std::vector<Case> cases{};
@@ -248,7 +249,6 @@ std::string change_junit(const timing::Timing& now, const timing::Timing& before
 
 std::string junit_of_error(const std::string& name, const std::string& message) {
   Suite suite{.name = name};
-  suite.started_at = os::utc_now().substr(0, suite.started_at.size());
   suite.cases = {error_case("run", message)};
   return text_of({suite});
 }

@@ -269,4 +269,10 @@ std::string answer_text(const std::vector<Answer>& answers, const std::vector<st
 /// Answers and advice of all scenarios in the same way.
 std::string verdict_text(const std::vector<Verdict>& verdicts, Markup markup);
 
+/// The answers as JSON: an array with an object for each scenario. The member "answer" is a name of
+/// a ruling: "fast enough", "doubtful whether fast enough in this flight".
+std::string verdicts_json(const std::vector<Verdict>& verdicts);
+/// The text of a run's result.json with the answer of its only condition as a member.
+std::string with_answer(const std::string& result_json, const Verdict& verdict);
+
 }  // namespace tether::report
