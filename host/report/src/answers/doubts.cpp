@@ -45,12 +45,6 @@ std::string named(const std::vector<std::string>& lines) {
 
 }  // namespace
 
-std::string capital(std::string_view text) {
-  std::string with(text);
-  if (!with.empty() && with[0] >= 'a' && with[0] <= 'z') with[0] = static_cast<char>(with[0] - 32);
-  return with;
-}
-
 std::string doubt_text(const FlightsInDoubt& doubt, const ConditionVerdict& condition) {
   const campaign::Doubt& largest = doubt.largest;
   const std::size_t ended = condition.flown + condition.failed;

@@ -1,15 +1,12 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 
 #include <tether/report/verdict.h>
 
 /// What limits the evidence of an answer, in sentences that begin with a space.
 namespace tether::report {
 
-/// With a capital letter.
-std::string capital(std::string_view text);
 /// A part of a sentence: "the program of uav1 waited 0.2 s for the disk, …".
 std::string doubt_text(const FlightsInDoubt& doubt, const ConditionVerdict& condition);
 std::string left_out_text(const ConditionVerdict& condition);

@@ -53,6 +53,12 @@ std::string in_a_sentence(std::string label) {
   return label;
 }
 
+std::string capital(std::string_view text) {
+  std::string with(text);
+  if (!with.empty() && with[0] >= 'a' && with[0] <= 'z') with[0] = static_cast<char>(with[0] - 32);
+  return with;
+}
+
 std::string share_text(double value) {
   return fmt::format("{:.0f} %", 100.0 * value);
 }

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include <tether/campaign/result.h>
 #include <tether/campaign/statistics.h>
@@ -34,6 +35,8 @@ std::string limit_text(const campaign::MetricValue& metric);
 std::string with_unit(const std::string& label, const std::string& unit);
 /// "Time required" → "time required"; "ROI error" stays.
 std::string in_a_sentence(std::string label);
+/// With a capital letter.
+std::string capital(std::string_view text);
 /// "9.4 ms", "108 ms"
 std::string short_ms(double seconds);
 /// "81 %"
