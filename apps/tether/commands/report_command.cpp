@@ -111,14 +111,15 @@ std::vector<report::Table> run_tables(const campaign::CampaignResults& results) 
 
 /// Its trials are those that the statistics asked for, not all of a campaign.
 void refuse_size(const std::filesystem::path& folder) {
-  if (!campaign::read_manifest(folder).name.starts_with(kSizePrefix)) return;
+  if (!campaign::read_manifest(folder).name.starts_with(campaign::kSizePrefix)) return;
   const std::filesystem::path page = folder / campaign::kReportFile;
   if (!std::filesystem::exists(page))
     refuse(folder,
            "was written by tether size, which has no answer yet. Call it again with "
            "--resume.");
-  refuse(folder, fmt::format("was written by tether size. Its answer is in {}; to make it again, "
-                             "call tether size with --resume.",
+  refuse(folder, fmt::format("was written by tether size. Its answer is in {}, for scripts in "
+                             "size.json beside it; to make it again, call tether size with "
+                             "--resume.",
                              page.string()));
 }
 

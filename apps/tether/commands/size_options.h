@@ -11,10 +11,6 @@
 
 namespace tether::app {
 
-/// The campaign in the folder of `tether size` is called this and the scenario's name. Names of
-/// campaign files have no spaces.
-inline constexpr std::string_view kSizePrefix = "size of ";
-
 /// What `tether size` leaves in its folder, beside the page and the flights.
 inline constexpr const char* kSizeFile = "size.json";
 inline constexpr const char* kSizeDrawing = "size.svg";

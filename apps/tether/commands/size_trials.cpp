@@ -68,7 +68,7 @@ void require_enough_trials(const SizeOptions& options, double miss) {
 
 SizeAxis::SizeAxis(const SizeOptions& options, const scenario::Scenario& scenario)
     : campaign(scenario::campaign_of(scenario, {}, options.max_trials)) {
-  campaign.name.insert(0, kSizePrefix);
+  campaign.name.insert(0, campaign::kSizePrefix);
   campaign.scenarios.clear();
 }
 

@@ -235,11 +235,18 @@ std::string text_of(const Clause& clause, const std::vector<Task>& tasks) {
   return text;
 }
 
+/// Whether a key is meant as a deadline: "within", "before_ms", "deadline_s".
+bool is_nearly_deadline(std::string_view key, std::string_view known) {
+  const std::string_view stem = key.substr(0, key.find('_'));
+  if (known == "within_s") return key != known && (stem == "within" || stem == "deadline");
+  return known == "before_s" && key != known && stem == "before";
+}
+
 /// Other keys are the program's own, but for what is nearly one of these.
 void refuse_misspelt(const Table& table, std::span<const std::string_view> keys) {
   for (const std::string& key : table.keys())
     for (const std::string_view known : keys)
-      if (is_misspelt(key, known))
+      if (is_misspelt(key, known) || is_nearly_deadline(key, known))
         table.fail(key, "is not known; did you mean '" + std::string(known) +
                             "'? If it is a key of your program's own, give it another name.");
 }

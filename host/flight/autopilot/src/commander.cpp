@@ -69,14 +69,11 @@ int Commander::run(const Command& command) {
     case kNavTakeoff:
       return take_off(command);
     case kNavLand:
-      enter(Mode::kLand);
-      return kAccepted;
+      return ask_for(Mode::kLand);
     case kNavReturn:
-      enter(Mode::kReturn);
-      return kAccepted;
+      return ask_for(Mode::kReturn);
     case kNavLoiter:
-      enter(Mode::kHold);
-      return kAccepted;
+      return ask_for(Mode::kHold);
     case kMissionStart:
       return start_mission(command);
     case kDoReposition:
@@ -182,7 +179,13 @@ int Commander::change_to(Mode mode) {
     outbox_->say(2, fmt::format("{} denied: {}", info(mode).name, why));
     return kRejected;
   }
-  enter(mode);
+  return ask_for(mode);
+}
+
+// To ask again for what it does already changes nothing, as in PX4: programs repeat their requests.
+int Commander::ask_for(Mode mode) {
+  if (!vehicle_->is_armed || vehicle_->mode != mode) enter(mode);
+  vehicle_->is_failsafe = false;
   return kAccepted;
 }
 

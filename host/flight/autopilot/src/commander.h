@@ -36,6 +36,7 @@ class Commander {
 
  private:
   int run(const Command& command);
+  int ask_for(Mode mode);
   void enter(Mode mode);
   int set_arming(const Command& command);
   int set_mode(std::int64_t base_mode, std::int64_t main, std::int64_t sub);

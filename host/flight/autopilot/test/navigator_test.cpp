@@ -92,6 +92,16 @@ TEST(Navigator, LandsAndDisarms) {
   EXPECT_EQ(flight.command(kArmCommand, {1}), kAccepted) << "it can fly again";
 }
 
+TEST(Navigator, LandsAlsoIfItIsAskedAgainAndAgain) {
+  Flight flight;
+  flight.take_off();
+  for (int i = 0; i < 60 && flight.is_armed(); ++i) {
+    flight.command(kLandCommand);
+    flight.run(0.2);
+  }
+  EXPECT_FALSE(flight.is_armed());
+}
+
 TEST(Navigator, LandsFastFromHighUp) {
   Flight flight({.parameters = {{"MIS_TAKEOFF_ALT", 12.0}}});
   flight.take_off();

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -20,6 +21,13 @@ struct Sample {
   SimTime sampled_at;
 };
 
+/// What the SUT told its UAV to fly, by the library or as a set-point by MAVLink.
+struct Command {
+  SimTime sent;
+  std::uint64_t sequence = 0;  ///< of its call
+  std::optional<SimTime> effect_at{};
+};
+
 /// The interactions of a SUT in a span, and what the quantities need of them.
 class Calls {
  public:
@@ -30,22 +38,22 @@ class Calls {
       const Interaction& i = logged.message;
       if (i.uav == uav && times_.sent(i) >= span.from && times_.answered(i) <= span.to)
         own_.push_back(&i);
+      if (i.uav == uav && i.kind == record::kCommand && times_.sent(i) >= span.from &&
+          times_.answered(i) <= span.to)
+        commands_.push_back({times_.sent(i), i.sequence, i.effect_at});
     }
     std::ranges::stable_sort(own_, {}, [&](const Interaction* i) { return times_.sent(*i); });
     for (const auto& logged : record.autopilot) {
       const record::AutopilotMessage& m = logged.message;
       if (m.uav == uav && m.is_setpoint() && m.sent_at >= span.from && m.sent_at <= span.to)
-        setpoints_.push_back(m.sent_at);
+        commands_.push_back({m.sent_at, m.sequence, m.acted_at});
     }
+    std::ranges::stable_sort(commands_, {}, [](const Command& command) {
+      return std::pair(command.sent, command.sequence);
+    });
   }
 
-  /// When the SUT commanded its UAV, by the library or by MAVLink.
-  std::vector<SimTime> commands() const {
-    std::vector<SimTime> at = setpoints_;
-    for (const Interaction* i : of_kind(record::kCommand)) at.push_back(times_.sent(*i));
-    std::ranges::sort(at);
-    return at;
-  }
+  const std::vector<Command>& commands() const { return commands_; }
 
   std::vector<const Interaction*> of_kind(std::string_view kind) const {
     std::vector<const Interaction*> found;
@@ -83,7 +91,7 @@ class Calls {
   Times times_;
   std::set<std::string> cameras_;
   std::vector<const Interaction*> own_;
-  std::vector<SimTime> setpoints_;  ///< by MAVLink
+  std::vector<Command> commands_;
 };
 
 /// Calls `take` with each command and the newest of `samples` that the SUT had when it sent it.
@@ -92,45 +100,43 @@ template <class Take>
 void with_newest(const Calls& calls, const std::vector<Sample>& samples, const Take& take) {
   std::size_t had = 0;
   const Sample* newest = nullptr;
-  for (const Interaction* command : calls.of_kind(record::kCommand)) {
-    const SimTime sent = calls.times().sent(*command);
+  for (const Command& command : calls.commands()) {
     // In free running, the next read can be answered in the step of ST in which this command came.
     const auto had_before = [&](const Sample& sample) {
-      return std::pair(sample.had_at, sample.sequence) < std::pair(sent, command->sequence);
+      return std::pair(sample.had_at, sample.sequence) < std::pair(command.sent, command.sequence);
     };
     for (; had < samples.size() && had_before(samples[had]); ++had)
       if (!newest || samples[had].sampled_at > newest->sampled_at) newest = &samples[had];
-    if (newest) take(*command, sent, *newest);
+    if (newest) take(command, *newest);
   }
 }
 
 std::vector<Event> reaction_times(const Calls& calls, const std::string& sensor) {
   std::vector<Event> events;
-  with_newest(
-      calls, calls.samples(sensor, true),
-      [&](const Interaction& command, SimTime sent, const Sample& image) {
-        if (!command.effect_at) return;
-        const Duration until_command = sent - image.had_at;
-        events.push_back(
-            {*command.effect_at, to_seconds(*command.effect_at - image.sampled_at),
-             Reaction{image.had_at - image.sampled_at, until_command, *command.effect_at - sent,
-                      until_command - calls.waiting(image.had_at, sent)}});
-      });
+  with_newest(calls, calls.samples(sensor, true), [&](const Command& command, const Sample& image) {
+    if (!command.effect_at) return;
+    const Duration until_command = command.sent - image.had_at;
+    events.push_back(
+        {*command.effect_at, to_seconds(*command.effect_at - image.sampled_at),
+         Reaction{image.had_at - image.sampled_at, until_command, *command.effect_at - command.sent,
+                  until_command - calls.waiting(image.had_at, command.sent)}});
+  });
   return events;
 }
 
 std::vector<Event> data_ages(const Calls& calls, const std::string& sensor) {
   std::vector<Event> events;
   with_newest(calls, calls.samples(sensor, false),
-              [&](const Interaction&, SimTime sent, const Sample& sample) {
-                events.push_back({sent, to_seconds(sent - sample.sampled_at), {}});
+              [&](const Command& command, const Sample& sample) {
+                events.push_back({command.sent, to_seconds(command.sent - sample.sampled_at), {}});
               });
   return events;
 }
 
 std::vector<Event> loop_periods(const Calls& calls, const std::string& sensor) {
   std::vector<SimTime> rounds;
-  if (sensor.empty()) rounds = calls.commands();
+  if (sensor.empty())
+    for (const Command& command : calls.commands()) rounds.push_back(command.sent);
   for (const Interaction* i : calls.of_kind(record::kSensor))
     if (i->sensor == sensor) rounds.push_back(calls.times().sent(*i));
   std::vector<Event> events;

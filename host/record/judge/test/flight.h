@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
 #include <string>
 
 #include <tether/judge/judge.h>
@@ -55,12 +56,13 @@ class Flight {
     return *this;
   }
   /// By MAVLink.
-  Flight& setpoint(double sent_s) {
+  Flight& setpoint(double sent_s, std::optional<double> effect_s = {}) {
     record::AutopilotMessage& sent = record_.autopilot.emplace_back().message;
     sent.uav = "uav1";
     sent.to_controller = true;
     sent.name = "SET_ATTITUDE_TARGET";
     sent.sent_at = st(sent_s);
+    if (effect_s) sent.acted_at = st(*effect_s);
     return *this;
   }
   Flight& command(double sent_s, double effect_s) {

@@ -218,6 +218,13 @@ TEST(Judge, ReactionsAgesAndLoops) {
   EXPECT_EQ(none.limit, 1.0);
 }
 
+TEST(Judge, ASetPointByMavlinkIsACommand) {
+  Flight flight = mission();
+  flight.image(3.0, 3.2, 3.1).setpoint(3.3, 3.4);
+  EXPECT_NEAR(*flight.verdict(R"(always = "reaction_time <= 1 s")").margin, 0.7, 1e-9);
+  EXPECT_NEAR(*flight.verdict(R"(always = "data_age of eye <= 1 s")").margin, 0.8, 1e-9);
+}
+
 TEST(Judge, ComputingOfAReactionIsWithoutWaitsForOtherCalls) {
   Flight flight = mission();
   flight.image(3.0, 3.2, 3.1).image(3.25, 3.45, 3.05).command(3.5, 3.6);

@@ -29,7 +29,8 @@ constexpr std::array kDoubts = {
     "the machine{subject} was busy or uneven: its times may be off by about {percent:.0f} %",
 };
 
-/// The first of several lines, as far as a sentence can name them.
+}  // namespace
+
 std::string named(const std::vector<std::string>& lines) {
   constexpr std::size_t kMost = 3;
   std::vector<std::string> parts;
@@ -42,8 +43,6 @@ std::string named(const std::vector<std::string>& lines) {
   }
   return joined_with_and(parts);
 }
-
-}  // namespace
 
 std::string doubt_text(const FlightsInDoubt& doubt, const ConditionVerdict& condition) {
   const campaign::Doubt& largest = doubt.largest;
@@ -72,10 +71,6 @@ std::string left_out_text(const ConditionVerdict& condition) {
                      named(condition.left_out));
 }
 
-std::string doubtful_text(const ConditionVerdict& condition) {
-  return fmt::format(" Doubtful, which can change the answer: {}.", named(condition.doubtful));
-}
-
 std::string doubts_text(const ConditionVerdict& condition) {
   std::string text;
   if (!condition.varied.empty() && condition.flown > 1)
@@ -83,8 +78,10 @@ std::string doubts_text(const ConditionVerdict& condition) {
   else if (condition.distinct > 1)
     text += " They all begin alike, and differ only in noise and measured times.";
   if (!condition.left_out.empty()) text += left_out_text(condition);
-  // Of a missed goal, it is named as a reason.
-  if (!condition.doubtful.empty() && !condition.miss) text += doubtful_text(condition);
+  const bool is_named =
+      condition.miss && condition.miss->evidence == MissReason::Evidence::kPossibleCause;
+  if (const auto& doubtful = condition.doubts_of_answer(); !doubtful.empty() && !is_named)
+    text += fmt::format(" Doubtful, which can change the answer: {}.", named(doubtful));
   constexpr double kFar = 0.9;
   if (is_sufficient(condition.ruling) && condition.closest && condition.closest->second > kFar)
     text += fmt::format(

@@ -162,9 +162,10 @@ std::string comparison_text(const Compared& other, const Compared& missed) {
   if (own_hz > 0.0 && other_hz > kSameCost * own_hz)
     cost_text += fmt::format(", and set-points are sent {:.2g} times a second instead of {:.2g}",
                              other_hz, own_hz);
-  return (is_sufficient(verdict.ruling) ? fmt::format("is {}", name(verdict.ruling))
-                                        : fmt::format("reaches it in {} of {}", verdict.reached,
-                                                      counted(verdict.flown, "flight"))) +
+  return (is_sufficient(verdict.ruling)
+              ? fmt::format("{} {}", is_in_doubt(verdict) ? "seems" : "is", name(verdict.ruling))
+              : fmt::format("reaches it in {} of {}", verdict.reached,
+                            counted(verdict.flown, "flight"))) +
          ": " + cost_text;
 }
 

@@ -207,7 +207,7 @@ const Words& words_of(Ruling ruling) {
 /// A good answer that rests on less than what was asked for.
 bool leaves_out(const ConditionVerdict& condition) {
   return is_sufficient(condition.ruling) &&
-         (!condition.left_out.empty() || !condition.doubtful.empty() ||
+         (!condition.left_out.empty() || !condition.doubtful_goals.empty() ||
           !condition.uncharged.empty());
 }
 
@@ -269,14 +269,18 @@ std::vector<Answer> sweep_answers(const std::vector<Verdict>& points) {
     for (const Verdict& point : points) {
       const ConditionVerdict& at = point.conditions[i];
       auto known = std::ranges::find_if(rulings, [&](const Alike& one) {
-        return one.first->ruling == at.ruling && leaves_out(*one.first) == leaves_out(at);
+        return one.first->ruling == at.ruling && leaves_out(*one.first) == leaves_out(at) &&
+               is_in_doubt(*one.first) == is_in_doubt(at);
       });
       if (known == rulings.end()) known = rulings.insert(rulings.end(), Alike{&at});
       known->where.push_back(
           fmt::format("{} ({} of {})", point.point, at.reached, counted(at.flown, "flight")));
     }
+    std::ranges::stable_sort(rulings, {}, [](const Alike& one) { return one.first->ruling; });
     for (const auto& [first, where] : rulings) {
-      Answer answer{capital(name(first->ruling)) + left_out_in_lead(*first),
+      const std::string ruling(name(first->ruling));
+      Answer answer{(is_in_doubt(*first) ? "Doubtful whether " + ruling : capital(ruling)) +
+                        left_out_in_lead(*first),
                     fmt::format(": “{}” with {}.{}", first->condition, joined_with_and(where),
                                 cause_text(*first))};
       if (!leaves_out(*first)) answer.ruling = first->ruling;
@@ -335,7 +339,9 @@ std::vector<Answer> answers_on_flights(std::span<const campaign::TrialResult* co
   const ConditionVerdict all = verdict_of(results_of("", trials));
   if (!all.left_out.empty())
     answers.push_back({"Not everything is simulated as written", "." + left_out_text(all)});
-  if (!all.doubtful.empty()) answers.push_back({"Something is doubtful", "." + doubtful_text(all)});
+  if (!all.doubtful_goals.empty())
+    answers.push_back({"Something is doubtful",
+                       ", which can change the answer: " + named(all.doubtful_goals) + "."});
   if (const FlightsInDoubt* busy = all.doubt(campaign::Doubt::Kind::kBusyMachine))
     answers.push_back({"Busy machine", ": " + doubt_text(*busy, all) + "."});
   if (const MissedLimits missed = missed_limits(trials); !missed.empty())

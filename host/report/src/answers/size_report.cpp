@@ -55,15 +55,10 @@ std::string than(double slowdown) {
   return slowdown < 1.0 ? "of" : "than";
 }
 
-bool has_warning(const SizedCondition& sized, bool (*is)(const Warning&)) {
-  return std::ranges::any_of(
-      sized.trials, [&](const auto& trial) { return std::ranges::any_of(trial.warnings, is); });
-}
-
-/// What the first words must say of the flights on which they rest.
+/// What the first words must say of the flights on which they rest, and a separator.
 std::string reservation(const SizedCondition& sized) {
-  if (has_warning(sized, is_left_out)) return std::string(kNotAsWritten) + ";";
-  return has_warning(sized, is_doubtful) ? std::string(kDoubtful) + ";" : ",";
+  const std::string text = reservation_on(pointers_to(sized.trials));
+  return text.empty() ? "," : text + ";";
 }
 
 /// Whether the answer is above slowdowns that fail.
@@ -211,10 +206,7 @@ Answer board_answer(const Board& board, const SizeReport& report) {
   const std::string name = fmt::format("{} ({} ×)", board.name, digits(board.slowdown));
   switch (verdict(board, report)) {
     case BoardVerdict::kSuffices:
-      return {has_warning(report.synchronised, is_doubtful) ? "Doubtful whether fast enough"
-              : has_warning(report.synchronised, is_left_out)
-                  ? std::string("Fast enough") + kNotAsWritten
-                  : "Fast enough",
+      return {"Fast enough" + reservation_on(pointers_to(report.synchronised.trials)),
               fmt::format(": {} has {}{} × headroom.", name, answer.is_above ? "at least " : "",
                           digits(headroom))};
     case BoardVerdict::kDoesNot:
@@ -240,8 +232,7 @@ bool is_answered(const SizeReport& report) {
 
 std::vector<Answer> size_answers(const SizeReport& report) {
   const sizing::Answer& answer = report.synchronised.answer;
-  std::vector<const campaign::TrialResult*> trials;
-  for (const campaign::TrialResult& trial : report.synchronised.trials) trials.push_back(&trial);
+  const std::vector<const campaign::TrialResult*> trials = pointers_to(report.synchronised.trials);
   if (auto unseen = unseen_answer(report.synchronised.condition, trials))
     return {*std::move(unseen)};
   std::vector<Answer> answers;
@@ -308,12 +299,12 @@ std::vector<std::string> size_advice(const SizeReport& report) {
   if (is_probably_not_for_speed(report))
     advice.emplace_back("Look for the reason in the program, the scenario and its limits.");
   else if (answer.is_below)
-    advice.push_back(fmt::format("Search below {} ×: `--between {:.2g},{:.2g}`.",
-                                 digits(report.question.least), 0.1 * report.question.least,
-                                 report.question.least));
+    advice.push_back(fmt::format(
+        "Search below {} ×: `--between {:.2g},{:.2g}`, with another `--out`.",
+        digits(report.question.least), 0.1 * report.question.least, report.question.least));
   if (answer.is_above)
     advice.push_back(fmt::format(
-        "To find the limit, search beyond {} ×: `--between {:.3g},{:.3g}`.",
+        "To find the limit, search beyond {} ×: `--between {:.3g},{:.3g}`, with another `--out`.",
         digits(report.question.most), report.question.most, 10.0 * report.question.most));
   if (is_probably_not_for_speed(report)) return advice;
   if (report.boards.empty())

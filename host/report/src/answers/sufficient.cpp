@@ -39,7 +39,7 @@ std::optional<Answer> sufficient_factor(const std::string& what, const ByFactor&
   const bool is_one_flight =
       std::all_of(flown.begin(), next, [](const auto& one) { return one.second->distinct == 1; });
   const bool is_as_written = std::all_of(flown.begin(), next, [](const auto& one) {
-    return one.second->left_out.empty() && one.second->doubtful.empty() &&
+    return one.second->left_out.empty() && one.second->doubtful_goals.empty() &&
            one.second->uncharged.empty();
   });
   return Answer{
@@ -89,12 +89,34 @@ std::vector<Answer> sufficient_factors(const std::vector<Verdict>& points) {
   return answers;
 }
 
+std::string reservation_on(std::span<const campaign::TrialResult* const> trials) {
+  const auto has = [&](bool (*is)(const Warning&)) {
+    return std::ranges::any_of(trials, [&](const campaign::TrialResult* trial) {
+      return trial->outcome == campaign::Outcome::kGoalReached &&
+             std::ranges::any_of(trial->warnings, is);
+    });
+  };
+  return has(is_left_out) ? kNotAsWritten : has(is_doubtful) ? kDoubtful : "";
+}
+
+std::vector<const campaign::TrialResult*> pointers_to(
+    const std::vector<campaign::TrialResult>& trials) {
+  std::vector<const campaign::TrialResult*> pointers;
+  for (const campaign::TrialResult& trial : trials) pointers.push_back(&trial);
+  return pointers;
+}
+
 bool is_left_out(const Warning& warning) {
   return warning.can_change_verdict && warning.consequence != Consequence::kDoubtful;
 }
 
+const std::vector<std::string>& ConditionVerdict::doubts_of_answer() const {
+  return is_sufficient(ruling) ? doubtful_goals : doubtful;
+}
+
 bool is_in_doubt(const ConditionVerdict& condition) {
-  return is_sufficient(condition.ruling) && !condition.doubtful.empty();
+  return (is_sufficient(condition.ruling) || condition.ruling == Ruling::kNotFastEnough) &&
+         !condition.doubts_of_answer().empty();
 }
 
 bool is_doubtful(const Warning& warning) {

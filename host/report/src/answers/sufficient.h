@@ -29,7 +29,7 @@ inline constexpr const char* kVarySeeds =
     "More flights show nothing new, because the seeds change nothing. Give the sensors noise or "
     "delays that vary (a profile), or let the world or the start vary.";
 
-/// A good answer that rests on something doubtful.
+/// An answer that speed is sufficient, or is not, which rests on something doubtful.
 bool is_in_doubt(const ConditionVerdict& condition);
 
 /// What can change a flight's verdict: something that it left out, or that may be a mistake.
@@ -37,5 +37,11 @@ bool is_left_out(const Warning& warning);
 bool is_doubtful(const Warning& warning);
 inline constexpr const char* kNotAsWritten = ", but not everything is simulated as written";
 inline constexpr const char* kDoubtful = ", but something is doubtful";
+
+/// What the first words of an answer must say of the flights that reached the goal, on which it
+/// rests: kNotAsWritten or kDoubtful; empty: nothing. Of others, it can be why they missed it.
+std::string reservation_on(std::span<const campaign::TrialResult* const> trials);
+std::vector<const campaign::TrialResult*> pointers_to(
+    const std::vector<campaign::TrialResult>& trials);
 
 }  // namespace tether::report

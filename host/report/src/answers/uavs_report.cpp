@@ -121,7 +121,7 @@ std::vector<Answer> uavs_answers(const UavsReport& report) {
     for (const campaign::TrialResult& trial : point.trials) trials.push_back(&trial);
   if (auto unseen = unseen_answer(report.condition, trials)) return {*std::move(unseen)};
   std::vector<Answer> answers = {
-      {lead_of(report),
+      {lead_of(report) + reservation_on(trials),
        fmt::format(" (“{}” under “{}”, {} of the flights wanted): {}; {}; {}.", report.board,
                    report.condition, in_percent(report.question.success), evidence_of(report),
                    in_percent(report.question.confidence), counted(flights_of(report), "flight"))}};

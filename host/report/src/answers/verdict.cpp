@@ -68,9 +68,13 @@ void count(ConditionVerdict& verdict, const campaign::TrialResult& trial) {
   ++verdict.flown;
   for (const Warning& warning : trial.warnings) {
     if (!is_left_out(warning) && !is_doubtful(warning)) continue;
-    auto& lines = is_doubtful(warning) ? verdict.doubtful : verdict.left_out;
     const std::string line = warning.subject + " " + warning.message;
-    if (std::ranges::count(lines, line) == 0) lines.push_back(line);
+    const auto add_to = [&](std::vector<std::string>& lines) {
+      if (std::ranges::count(lines, line) == 0) lines.push_back(line);
+    };
+    add_to(is_doubtful(warning) ? verdict.doubtful : verdict.left_out);
+    if (is_doubtful(warning) && trial.outcome == campaign::Outcome::kGoalReached)
+      add_to(verdict.doubtful_goals);
   }
   for (const scenario::Varied& one : trial.varied)
     if (std::ranges::count(verdict.varied, one.what) == 0) verdict.varied.push_back(one.what);
@@ -107,6 +111,19 @@ void count(ConditionVerdict& verdict, const campaign::TrialResult& trial) {
   if (!is_by_margins) return;
   if (!verdict.tightest || std::abs(worst->second) < std::abs(verdict.tightest->second))
     verdict.tightest = worst;
+  verdict.margins.push_back(worst->second);
+}
+
+/// What it shows that so many of the distinct flights reach the goal.
+Ruling shown_by(std::size_t reached, const ConditionVerdict& verdict) {
+  // Those that failed could all have missed it.
+  if (exact_interval(reached, verdict.distinct + verdict.failed).low >= kWantedSuccess)
+    return Ruling::kFastEnough;
+  if (reached == verdict.distinct && verdict.failed == 0) return Ruling::kFastEnoughSoFar;
+  const bool is_missed =
+      exact_interval(reached, verdict.distinct).high < kWantedSuccess || verdict.is_one_flight();
+  // A board that was throttled could do better.
+  return is_missed && verdict.throttled == 0 ? Ruling::kGoalMissed : Ruling::kUndecided;
 }
 
 Ruling ruling_of(const ConditionVerdict& verdict, const campaign::ConditionResults& results) {
@@ -121,15 +138,7 @@ Ruling ruling_of(const ConditionVerdict& verdict, const campaign::ConditionResul
   const bool all = verdict.reached == verdict.flown;
   if (all && std::ranges::none_of(trials, has_limit)) return Ruling::kNothingToDecide;
   if (is_within_spread(verdict) || !verdict.mixed_build.empty()) return Ruling::kUndecided;
-  // Those that failed could all have missed it.
-  const bool is_shown =
-      exact_interval(verdict.distinct_reached, verdict.distinct + verdict.failed).low >=
-      kWantedSuccess;
-  if (is_shown) return Ruling::kFastEnough;
-  if (all && verdict.failed == 0) return Ruling::kFastEnoughSoFar;
-  const bool is_missed = verdict.share->high < kWantedSuccess || verdict.is_one_flight();
-  // A board that was throttled could do better.
-  return is_missed && verdict.throttled == 0 ? Ruling::kGoalMissed : Ruling::kUndecided;
+  return shown_by(verdict.distinct_reached, verdict);
 }
 
 /// What of a UAV's program was built again between these flights; empty: nothing.
@@ -155,11 +164,20 @@ std::string mixed_build(const std::vector<const campaign::TrialResult*>& flights
 }  // namespace
 
 bool is_within_spread(const ConditionVerdict& verdict, const FlightsInDoubt& doubt) {
-  if (doubt.largest.is_of_unseen_time() || !verdict.tightest) return false;
+  if (doubt.largest.is_of_unseen_time() || verdict.distinct == 0) return false;
   // What took t can take (1 + amount) t, or the other way round: 90 % more of a fifth of a limit is
   // within it.
-  const double margin = verdict.tightest->second, amount = doubt.largest.amount;
-  return margin >= 0.0 ? (1.0 - margin) * (1.0 + amount) > 1.0 : -margin < amount;
+  const double amount = doubt.largest.amount;
+  std::size_t may_miss = 0, may_reach = 0;
+  for (const double margin : verdict.margins)
+    if (margin >= 0.0)
+      may_miss += (1.0 - margin) * (1.0 + amount) > 1.0 ? 1U : 0U;
+    else
+      may_reach += -margin < amount ? 1U : 0U;
+  const std::size_t reached = verdict.distinct_reached;
+  const Ruling shown = shown_by(reached, verdict);
+  return shown_by(reached - std::min(reached, may_miss), verdict) != shown ||
+         shown_by(std::min(verdict.distinct, reached + may_reach), verdict) != shown;
 }
 
 bool is_within_spread(const ConditionVerdict& verdict) {

@@ -21,7 +21,7 @@ Json json_of(const ConditionVerdict& condition) {
             {"distinct", condition.distinct},
             {"failed", condition.failed}}},
           {"left_out", condition.left_out},
-          {"doubtful", condition.doubtful}};
+          {"doubtful", condition.doubts_of_answer()}};
 }
 
 Json json_of(const std::vector<Verdict>& points) {

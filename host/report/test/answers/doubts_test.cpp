@@ -80,8 +80,7 @@ TEST(Verdict, AdvisesAProgramAsItIsNothingThatOnlyProgramsWithTheLibraryCanDo) {
   EXPECT_THAT(advice(), needs_library);
   trial.suts.resize(1);
   trial.suts[0].as_is = true;
-  EXPECT_THAT(advice(),
-              testing::AllOf(HasSubstr("`clock = \"wall\"`"), testing::Not(needs_library)));
+  EXPECT_THAT(advice(), testing::AllOf(HasSubstr("--all-processes"), testing::Not(needs_library)));
 }
 
 TEST(Verdict, OfReplayedTimesHasTheDoubtsOfTheirMeasurement) {

@@ -363,11 +363,11 @@ TEST(Verdict, OfASweepGroupsItsPointsByTheirRuling) {
   const std::vector<Answer> answers = answers_of(groups[0]);
   ASSERT_EQ(answers.size(), 4u);
   EXPECT_EQ(answers[0].lead, "Up to 2 × slower would do");
-  EXPECT_EQ(answers[1].lead, "Fast enough so far");
-  EXPECT_EQ(answers[1].rest,
+  EXPECT_EQ(answers[1].lead, "Goal missed") << "the most urgent ruling first";
+  EXPECT_EQ(answers[2].lead, "Fast enough so far");
+  EXPECT_EQ(answers[2].rest,
             ": “target” with cpu_factor = 1 (10 of 10 flights) and cpu_factor = 2 (10 of 10 "
             "flights). They all begin alike, and differ only in noise and measured times.");
-  EXPECT_EQ(answers[2].lead, "Goal missed");
   EXPECT_EQ(answers[3].lead, "Differences");
   EXPECT_THAT(answers[3].rest, StartsWith(": 2 of 3 pairs of points differ in how often"));
   EXPECT_THAT(advice_of(groups[0])[0], StartsWith("cpu_factor = 3: "));
@@ -461,9 +461,46 @@ TEST(Verdict, OfASweepNamesWhatLimitsItsPoints) {
     point->settings = {{"world", point == &windy ? "\"windy\"" : "\"lost\""}};
   }
   const std::vector<Answer> answers = answers_of({verdict_of(windy), verdict_of(lost)});
-  EXPECT_EQ(answers[0].lead, "Fast enough so far, but not everything is simulated as written");
-  EXPECT_THAT(answers[0].rest, HasSubstr("<wind>"));
-  EXPECT_THAT(answers[1].rest, HasSubstr("The first reason: the board is not found."));
+  EXPECT_THAT(answers[0].rest, HasSubstr("The first reason: the board is not found."));
+  EXPECT_EQ(answers[1].lead, "Fast enough so far, but not everything is simulated as written");
+  EXPECT_THAT(answers[1].rest, HasSubstr("<wind>"));
+}
+
+// As a program that crashed at its start, and flew when it was started again.
+TEST(Verdict, IsDoubtfulForWhatFlightsThatReachedTheGoalHaveOnly) {
+  const Warning doubt{Consequence::kDoubtful, {}, "a program", "failed in a first attempt"};
+  campaign::ScenarioResults scenario = flights(40, 1);
+  auto& trials = scenario.conditions[0].trials;
+  const auto missed =
+      std::ranges::find(trials, campaign::Outcome::kGoalMissed, &campaign::TrialResult::outcome);
+  ASSERT_NE(missed, trials.end());
+  missed->warnings = {doubt};
+  EXPECT_EQ(name(verdict_of(scenario).first()), name(verdict_of(flights(40, 1)).first()))
+      << "it can be why that one missed the goal";
+  for (campaign::TrialResult& trial : trials) trial.warnings = {doubt};
+  scenario.swept_from = "turn";
+  scenario.settings = {{"world", "\"yard\""}};
+  trials.erase(missed);
+  const Verdict verdict = verdict_of(scenario);
+  EXPECT_THAT(name(verdict.first()), StartsWith("doubtful whether fast enough"));
+  EXPECT_THAT(answers_of({verdict})[0].lead, StartsWith("Doubtful whether fast enough"));
+}
+
+// One that just reached it among nine that clearly missed it changes nothing.
+TEST(Verdict, IsUndecidedOnABusyMachineOnlyIfItsSpreadCouldChangeTheRuling) {
+  campaign::ScenarioResults scenario = flights(10, 9);
+  for (campaign::TrialResult& trial : scenario.conditions[0].trials) {
+    trial.this_run.doubts = {{campaign::Doubt::Kind::kBusyMachine, "", 0.2}};
+    trial.metrics.resize(1);
+    const bool is_reached = trial.outcome == campaign::Outcome::kGoalReached;
+    trial.metrics[0].value = is_reached ? 2.9 : 6.0;
+    trial.metrics[0].max = 3.0;
+  }
+  EXPECT_EQ(verdict_of(scenario).first().ruling, Ruling::kGoalMissed);
+  scenario.conditions[0].trials.back().outcome = campaign::Outcome::kGoalReached;
+  for (campaign::TrialResult& trial : scenario.conditions[0].trials)
+    trial.metrics[0].value = trial.outcome == campaign::Outcome::kGoalReached ? 2.9 : 3.1;
+  EXPECT_EQ(verdict_of(scenario).first().ruling, Ruling::kUndecided);
 }
 
 TEST(Verdict, NamesWhatOfTheWorldIsMissing) {

@@ -94,6 +94,11 @@ void require_nothing_dropped(const fs::path& folder, const CampaignManifest& the
     return std::find(kept.begin(), kept.end(), name) != kept.end();
   });
   if (dropped.empty()) return;
+  if (now.name.starts_with(kSizePrefix))
+    refuse_folder(
+        folder,
+        "has the flights of another search, with another --between, --condition or "
+        "--axis. Choose another folder with --out, or remove those flights with --force.");
   const std::size_t more = dropped.size() - std::min(dropped.size(), kMostNames);
   dropped.resize(dropped.size() - more);
   refuse_folder(

@@ -147,6 +147,22 @@ std::string why_missed(const TrialResult& result) {
   return "";
 }
 
+/// Which task of its mission a program left out or missed, although its mission cannot reach its
+/// goal without that; empty: none.
+std::string missed_task(const mission::Mission& mission,
+                        const std::vector<judge::TaskSpan>& spans) {
+  for (const mission::Task& task : mission.tasks) {
+    if (task.on_miss.kind == mission::OnMiss::Kind::kContinue) continue;
+    const judge::TaskSpan* last = nullptr;
+    for (const judge::TaskSpan& span : spans)
+      if (span.task == task.name) last = &span;
+    if (last == nullptr) return fmt::format("never began '{}' of its mission", task.name);
+    if (last->status != "reached")
+      return fmt::format("ended '{}' of its mission as \"{}\"", task.name, last->status);
+  }
+  return "";
+}
+
 void judge_missions(TrialResult& result, const scenario::Scenario& scenario,
                     const record::Record& record) {
   for (const scenario::UavSetup& uav : scenario.uavs) {
@@ -156,12 +172,16 @@ void judge_missions(TrialResult& result, const scenario::Scenario& scenario,
       if (scenario.uavs.size() > 1) clause.name += ", " + uav.placement.name;
     const auto own = std::ranges::find(result.suts, uav.placement.name, &SutResult::uav);
     // A program as it is does not tell what task it flies.
-    if (verdicts.tasks.empty() && own != result.suts.end() && own->reached_goal && !own->as_is)
-      result.warnings.push_back({Consequence::kDoubtful,
-                                 {},
-                                 "UAV '" + uav.placement.name + "'",
-                                 "has a program that says it reached its goal, but began no task "
-                                 "of its mission"});
+    if (own != result.suts.end() && own->reached_goal && !own->as_is) {
+      const std::string missed = verdicts.tasks.empty()
+                                     ? "began no task of its mission"
+                                     : missed_task(*uav.sut.mission, verdicts.tasks);
+      if (!missed.empty())
+        result.warnings.push_back({Consequence::kDoubtful,
+                                   {},
+                                   "UAV '" + uav.placement.name + "'",
+                                   "has a program that says it reached its goal, but " + missed});
+    }
     result.tasks.insert(result.tasks.end(), verdicts.tasks.begin(), verdicts.tasks.end());
     result.clauses.insert(result.clauses.end(), verdicts.clauses.begin(), verdicts.clauses.end());
   }
@@ -234,7 +254,7 @@ TrialResult make_result(const scenario::Scenario& scenario, const scenario::Cond
   result.this_run.largest_lag = footer.largest_lag;
   const double max_speed_m_s = scenario.max_contact_speed_m_s;
   result.contacts = contacts_of(record, max_speed_m_s);
-  settle(result, never_began.empty() ? footer.reason : never_began,
+  settle(result, (never_began.empty() ? footer.reason : never_began) + where_to_find(record),
          why_crashed(record, max_speed_m_s));
   return result;
 }

@@ -5,8 +5,10 @@
 #include <iterator>
 #include <map>
 #include <numeric>
+#include <optional>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 namespace tether::campaign {
@@ -28,21 +30,59 @@ std::string refusal_of(const record::Record& record, const std::string& uav) {
   return refusal;
 }
 
-/// Whether the last answer to a request for a mode or a take-off was no.
-bool is_denied(const record::Record& record, const std::string& uav) {
-  constexpr int kAccepted = 0, kInProgress = 5;  // MAV_RESULT
-  constexpr int kTakeOff = 22, kSetMode = 176;   // MAV_CMD
-  std::map<int, int> answers;
+/// What its flight controller says of a UAV, as far as it can make a good end doubtful.
+struct Said {
+  std::map<int, int> answers;  ///< the last one to each command (MAV_RESULT)
+  int mission = 0;             ///< the last answer to a mission (MAV_MISSION_RESULT)
+  std::optional<SimTime> failsafe_at{};
+  bool is_armed = true;  ///< as far as it says
+};
+Said said_of(const record::Record& record, const std::string& uav) {
+  constexpr int kCritical = 5, kArmed = 128;  // MAV_STATE, MAV_MODE_FLAG
+  Said said;
   for (const auto& logged : record.autopilot) {
     const record::AutopilotMessage& m = logged.message;
-    if (m.uav != uav || !m.of_controller() || m.name != "COMMAND_ACK") continue;
+    const bool is_read =
+        m.name == "COMMAND_ACK" || m.name == "MISSION_ACK" || m.name == "HEARTBEAT";
+    if (m.uav != uav || !m.of_controller() || !is_read) continue;
     const auto fields = nlohmann::json::parse(m.fields, nullptr, false);
-    if (fields.is_object()) answers[fields.value("command", 0)] = fields.value("result", kAccepted);
+    if (!fields.is_object()) continue;
+    if (m.name == "COMMAND_ACK")
+      said.answers[fields.value("command", 0)] = fields.value("result", 0);
+    if (m.name == "MISSION_ACK") said.mission = fields.value("type", 0);
+    if (m.name != "HEARTBEAT") continue;
+    said.is_armed = (fields.value("base_mode", 0) & kArmed) != 0;
+    if (fields.value("system_status", 0) >= kCritical && !said.failsafe_at)
+      said.failsafe_at = m.sent_at;
   }
-  return std::ranges::any_of(answers, [&](const auto& answer) {
-    return (answer.first == kTakeOff || answer.first == kSetMode) && answer.second != kAccepted &&
-           answer.second != kInProgress;
-  });
+  return said;
+}
+
+/// The command whose last answer was no; none: there is none. Requests for messages change nothing
+/// of the flight.
+std::optional<int> denied_command(const Said& said) {
+  constexpr int kAccepted = 0, kInProgress = 5;                     // MAV_RESULT
+  constexpr int kRequests[] = {410, 510, 511, 512, 519, 520, 521};  // MAV_CMD
+  for (const auto& [command, result] : said.answers)
+    if (result != kAccepted && result != kInProgress &&
+        std::ranges::find(kRequests, command) == std::end(kRequests))
+      return command;
+  return std::nullopt;
+}
+
+std::string name_of_command(int command) {
+  switch (command) {
+    case 22:
+      return "a take-off";
+    case 176:
+      return "a mode";
+    case 300:
+      return "the start of a mission";
+    case 400:
+      return "arming or disarming";
+    default:
+      return fmt::format("command {} (MAV_CMD)", command);
+  }
 }
 
 constexpr const char* kDidNothing =
@@ -107,15 +147,20 @@ void check_companion(const record::Record& record, bool nothing, SutResult& sut,
                     refused, refused > 1 ? "s" : ""));
   const bool has_sent = std::ranges::any_of(record.autopilot, is_sent);
   if (nothing) return doubt(kDidNothing);
-  const std::string said = sut.reached_goal ? "" : refusal_of(record, sut.uav);
-  if (!said.empty())
+  const std::string refusal = refusal_of(record, sut.uav);
+  const std::string why = refusal.empty() ? "" : ": " + refusal;
+  if (!sut.reached_goal && !refusal.empty())
     sut.outcome +=
-        fmt::format("{}the flight controller said: {}", sut.outcome.empty() ? "" : "; ", said);
-  if (sut.reached_goal && is_denied(record, sut.uav))
-    doubt(
-        "has a program that says it reached its goal, but its last request for a mode or a "
-        "take-off was denied: " +
-        refusal_of(record, sut.uav));
+        fmt::format("{}the flight controller said{}", sut.outcome.empty() ? "" : "; ", why);
+  const Said said = said_of(record, sut.uav);
+  constexpr const char* kButLast = "has a program that says it reached its goal, but its last ";
+  if (const auto command = denied_command(said); sut.reached_goal && command)
+    doubt(fmt::format("{}request for {} was denied{}", kButLast, name_of_command(*command), why));
+  if (sut.reached_goal && said.mission != 0)
+    doubt(fmt::format("{}mission was refused{}", kButLast, why));
+  if (sut.reached_goal && said.failsafe_at)
+    doubt(fmt::format("has a flight controller that was in a failsafe at ST {:.3f} s{}",
+                      to_seconds(*said.failsafe_at), why));
   const auto [first, last, has_moved, has_turned] = motion_of(record, sut.uav);
   if (!has_sent) return doubt("has a flight controller to which its program sent no message");
   const bool began_in_air = first != nullptr && first->clearance_m && *first->clearance_m > kAway_m;
@@ -123,8 +168,8 @@ void check_companion(const record::Record& record, bool nothing, SutResult& sut,
     doubt(sut.reached_goal
               ? "never left its start, although its program says that it reached its goal"
               : "never left its start");
-  if (sut.reached_goal && !began_in_air && last != nullptr && last->clearance_m &&
-      *last->clearance_m > kAway_m)
+  if (sut.reached_goal && (!began_in_air || !said.is_armed) && last != nullptr &&
+      last->clearance_m && *last->clearance_m > kAway_m)
     doubt(
         fmt::format("is in the air ({:.3g} m from anything) when its program ends: what follows "
                     "was not flown",
@@ -135,14 +180,23 @@ void check_companion(const record::Record& record, bool nothing, SutResult& sut,
 
 std::string check_program(const record::Record& record, const record::SutInfo& info, SutResult& sut,
                           std::vector<Warning>& warnings) {
+  const Motion motion = motion_of(record, info.uav);
+  if (constexpr double kFalls_m_s = 2.0;
+      sut.reached_goal && motion.last != nullptr && motion.last->clearance_m &&
+      *motion.last->clearance_m > kAway_m && motion.last->v_WB_m_s[2] < -kFalls_m_s)
+    warnings.push_back({Consequence::kDoubtful,
+                        {},
+                        "UAV '" + info.uav + "'",
+                        fmt::format("sinks at {:.3g} m/s, {:.3g} m from anything, when its program "
+                                    "ends",
+                                    -motion.last->v_WB_m_s[2], *motion.last->clearance_m)});
   constexpr std::ptrdiff_t kHardlyAny = 5;
   const std::ptrdiff_t calls = calls_of(record, info);
   const bool nothing = calls == 0;
   if (info.controller)
     check_companion(record, nothing, sut, warnings);
   else if (!nothing && calls < kHardlyAny && sut.finished && sut.reached_goal)
-    if (const Motion motion = motion_of(record, info.uav);
-        motion.first != nullptr && !motion.has_moved && !motion.has_turned)
+    if (motion.first != nullptr && !motion.has_moved && !motion.has_turned)
       warnings.push_back(
           {Consequence::kDoubtful,
            {},
@@ -162,6 +216,26 @@ std::string check_program(const record::Record& record, const record::SutInfo& i
   if (!sut.finished) return "";
   return fmt::format("the program of UAV '{}' ended before it did anything with it{}{}", sut.uav,
                      sut.outcome.empty() ? "" : ": ", sut.outcome);
+}
+
+std::string where_to_find(const record::Record& record) {
+  const auto& suts = record.header.suts;
+  const auto lost = std::ranges::find_if(
+      suts, [&](const record::SutInfo& sut) { return sut.as_is && calls_of(record, sut) == 0; });
+  if (lost == suts.end()) return "";
+  const auto cameras =
+      std::ranges::count_if(record.header.sensors, [&](const record::SensorInfo& sensor) {
+        return sensor.uav == lost->uav && sensor.kind == "camera";
+      });
+  std::vector<std::string> places;
+  if (lost->controller)
+    places.push_back("MAVLink at UDP port 14540 or 14550, TCP port 5760 or /dev/ttyACM0");
+  if (cameras > 0)
+    places.push_back(cameras == 1 ? "its camera at /dev/video0"
+                                  : fmt::format("its cameras at /dev/video0 to {}", cameras - 1));
+  return places.empty() ? ""
+                        : fmt::format(". A program finds {} (docs/guide/as-is.md)",
+                                      fmt::join(places, ", and "));
 }
 
 }  // namespace tether::campaign

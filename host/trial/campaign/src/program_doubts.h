@@ -13,4 +13,8 @@ namespace tether::campaign {
 std::string check_program(const record::Record& record, const record::SutInfo& info, SutResult& sut,
                           std::vector<Warning>& warnings);
 
+/// Where an unmodified program that did nothing with its UAV would have found it, as the rest of a
+/// reason; empty: there is none.
+std::string where_to_find(const record::Record& record);
+
 }  // namespace tether::campaign

@@ -71,6 +71,12 @@ TrialResult attempt_twice(const TrialPlan& plan, const TrialExecutor& execute,
   TrialResult second = attempt(plan, execute);
   second.this_run.attempts = 2;
   second.this_run.first_failure = first.reason;
+  // Without a program's end, the machine, the link or the simulator failed.
+  if (!first.suts.empty() && second.outcome != Outcome::kFailed)
+    second.warnings.push_back({Consequence::kDoubtful,
+                               {},
+                               "a program",
+                               "failed in a first attempt, and the flight was begun again"});
   return second;
 }
 

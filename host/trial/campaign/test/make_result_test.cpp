@@ -58,7 +58,9 @@ TEST_F(MakeResult, AProgramThatDoesNothingSaysNothingAboutItsComputer) {
   record::Interaction& call = record.interactions.emplace_back().message;
   call.uav = "uav1";
   call.kind = record::kFinish;
+  record.header.sensors.push_back({.uav = "uav1", .name = "eye", .kind = "camera"});
   EXPECT_EQ(make(record, kReached).outcome, Outcome::kFailed);
+  EXPECT_THAT(make(record, kReached).reason, HasSubstr("cameras at /dev/video0 to 1"));
   record.header.suts[0].as_is = false;
   const TrialResult own_word = make(record, kReached);
   EXPECT_EQ(own_word.outcome, Outcome::kGoalReached) << "it says itself that it has flown";
@@ -92,6 +94,11 @@ TEST_F(MakeResult, AProgramThatBeganNoTaskOfItsMissionIsDoubtful) {
   };
   for (int i = 0; i < 9; ++i) record.interactions.push_back(record.interactions.back());
   EXPECT_THAT(to_line(doubts().at(0)), HasSubstr("began no task of its mission"));
+  record::Annotation& task = record.annotations.emplace_back().message;
+  task.uav = "uav1";
+  task.topic = "mission";
+  task.json = R"({"task": "search", "event": "start"})";
+  EXPECT_THAT(to_line(doubts().at(0)), HasSubstr("'search' of its mission"));
   record.header.suts[0].as_is = true;
   EXPECT_TRUE(doubts().empty()) << "such a program does not tell its tasks";
 }
@@ -143,7 +150,7 @@ TEST_F(MakeResult, ACompanionHasFlownOnlyIfItHasSentSomething) {
   answer.name = "COMMAND_ACK";
   answer.fields = R"({"command": 176, "result": 2})";
   EXPECT_THAT(to_line(make(record, kReached).warnings.at(0)),
-              HasSubstr("a take-off was denied: Arming denied: no fix"));
+              HasSubstr("its last request for a mode was denied: Arming denied: no fix"));
   record.autopilot.push_back(record.autopilot.back());
   record.autopilot.back().message.fields = R"({"command": 176, "result": 0})";
   record.ground_truth.push_back(record.ground_truth.back());
@@ -162,6 +169,46 @@ TEST_F(MakeResult, ACompanionHasFlownOnlyIfItHasSentSomething) {
   last.q_WB[0] = first.q_WB[0] * std::cos(half_rad) - first.q_WB[3] * std::sin(half_rad);
   last.q_WB[3] = first.q_WB[0] * std::sin(half_rad) + first.q_WB[3] * std::cos(half_rad);
   EXPECT_TRUE(make(record, kReached).warnings.empty()) << "it turned";
+}
+
+TEST_F(MakeResult, WhatTheFlightControllerDeniedOrDidByItselfIsDoubtful) {
+  record::Record record = finished_record();
+  record.header.suts[0].controller.emplace().name = "built-in";
+  record.ground_truth.push_back(record.ground_truth.front());
+  record.ground_truth.back().message.p_WB_m[0] += 1.0;
+  const auto say = [&](const char* name, const char* fields, bool to_controller = false) {
+    record::AutopilotMessage& message = record.autopilot.emplace_back().message;
+    message.uav = "uav1";
+    message.to_controller = to_controller;
+    message.outcome = record::kDelivered;
+    message.name = name;
+    message.fields = fields;
+  };
+  const auto doubts = [&] {
+    std::string lines;
+    for (const Warning& warning : make(record, kReached).warnings) lines += to_line(warning) + "\n";
+    return lines;
+  };
+  say("SET_MODE", "{}", true);
+  say("HEARTBEAT", R"({"base_mode": 217, "system_status": 4})");
+  say("COMMAND_ACK", R"({"command": 512, "result": 2})");
+  EXPECT_EQ(doubts(), "") << "a message that was asked for is none of the flight";
+  const record::Record fine = record;
+  say("COMMAND_ACK", R"({"command": 300, "result": 2})");
+  EXPECT_THAT(doubts(), HasSubstr("its last request for the start of a mission was denied"));
+  say("COMMAND_ACK", R"({"command": 300, "result": 0})");
+  EXPECT_EQ(doubts(), "") << "it was accepted later";
+  say("MISSION_ACK", R"({"type": 3})");
+  EXPECT_THAT(doubts(), HasSubstr("its last mission was refused"));
+  record = fine;
+  say("HEARTBEAT", R"({"base_mode": 217, "system_status": 5})");
+  EXPECT_THAT(doubts(), HasSubstr("was in a failsafe"));
+  record = fine;
+  say("HEARTBEAT", R"({"base_mode": 89, "system_status": 3})");
+  for (auto& logged : record.ground_truth) logged.message.clearance_m = 2.0;
+  EXPECT_THAT(doubts(), HasSubstr("is in the air")) << "disarmed";
+  record.ground_truth.back().message.v_WB_m_s[2] = -2.3;
+  EXPECT_THAT(doubts(), HasSubstr("sinks at 2.3 m/s, 2 m from anything, when its program ends"));
 }
 
 TEST_F(MakeResult, TakesEverythingFromTheRecord) {

@@ -63,10 +63,13 @@ std::vector<campaign::Doubt> doubts_of(const coordinator::SutReport& sut,
   const double least_s = std::max(to_seconds(kLeastDoubt), kDoubtfulShare * et_s);
   const coordinator::SutLooks& looks = sut.looks;
   // In ET: a scaled wall clock stretches all waiting. Under a scaled CPU clock, it can be for a
-  // program that computes, and for which the modelled computer would take that much longer.
+  // program that computes, and for which the modelled computer would take that much longer; but not
+  // that of a program as it is, whose waits for others are seen, and which is charged for them.
   const double waiting_s = to_seconds(looks.waiting);
   const bool counts = clock.counts_waiting();
-  const double stretched_s = waiting_s * (counts ? clock.factor : std::max(1.0, clock.factor));
+  const double stretched_s = waiting_s * (counts       ? clock.factor
+                                          : sees_waits ? 1.0
+                                                       : std::max(1.0, clock.factor));
   // A side that sees waits looks at them from time to time, which takes some milliseconds each.
   const double least_wait_s = sees_waits ? kLooksAfterOthers * least_s : least_s;
   if (stretched_s > least_wait_s && (counts || waiting_s > to_seconds(kLeastSeenWait)) &&

@@ -45,6 +45,15 @@ TEST(SutWatch, DoubtsWaitingThatTheModelledComputerMakesLong) {
       << "as seen on a busy machine";
 }
 
+// With two threads of Python, at each of 7000 messages.
+TEST(SutWatch, OfAProgramAsItIsNoFactorStretchesWhatItWaits) {
+  const computer::Clock slow{ClockKind::kCpu, 12.0};
+  EXPECT_THAT(doubts_of(report(seconds(20), {.waiting = milliseconds(700)}), slow, false, true),
+              IsEmpty());
+  EXPECT_THAT(doubts_of(report(seconds(20), {.waiting = seconds(3)}), slow, false, true),
+              ElementsAre(Doubt{Doubt::Kind::kUnseenWait, "uav1", 3.0}));
+}
+
 TEST(SutWatch, DoubtsNoWaitingThatAReplayedWallTimeHas) {
   const auto sut = report(seconds(9), {.waiting = seconds(5)});
   EXPECT_THAT(doubts_of(sut, {ClockKind::kReplayed}, true), IsEmpty());

@@ -86,8 +86,16 @@ Metric read_metric(const toml::Table& table, const Scenario& scenario) {
   metric.of_any_flight = kind.of_any_flight;
   const std::string limit = limit_key(kind);
   metric.limit_line = table.where(table.has(limit) ? limit : "kind").line;
-  if (table.has(limit))
-    (kind.is_better_if_more ? metric.min : metric.max) = table.number(limit, kLimit);
+  if (table.has(limit)) {
+    const double value = table.number(limit, kLimit);
+    (kind.is_better_if_more ? metric.min : metric.max) = value;
+    if ((kind.is_better_if_more && value == 0.0) ||
+        (kind.unit == "deg" && value >= kThreshold_deg.max))
+      table.fail(limit,
+                 fmt::format("is {:g}, which nothing can miss. Give a limit that a bad flight "
+                             "misses, or remove the key.",
+                             value));
+  }
   return metric;
 }
 

@@ -119,11 +119,14 @@ struct ConditionVerdict {
   /// Of the worst ones of each flight, that which is nearest to its limit, on either side: a small
   /// change can change that flight's outcome.
   std::optional<std::pair<std::string, double>> tightest{};
+  std::vector<double> margins{};         ///< the worst one of each such flight
   std::string reason{};                  ///< of the first flight that failed, or is not sound
   std::vector<FlightsInDoubt> doubts{};  ///< one of each kind, in the order of the kinds
   /// What of the files is not simulated as written and can change the verdict, one line each.
   std::vector<std::string> left_out{};
-  std::vector<std::string> doubtful{};  ///< what of a flight may be a mistake, one line each
+  /// What of a flight may be a mistake, one line each; and what of those is so in flights that
+  /// reached the goal, where a missed one does not explain it.
+  std::vector<std::string> doubtful{}, doubtful_goals{};
   /// Stages that the flights computed for nothing: times are replayed, and have none of them.
   std::vector<std::string> uncharged{};
   std::vector<std::string> varied{};  ///< what the scenario varies from flight to flight
@@ -145,10 +148,13 @@ struct ConditionVerdict {
     return ruling == Ruling::kNotFastEnough || ruling == Ruling::kGoalMissed ||
            ruling == Ruling::kOtherReason;
   }
+  /// What is doubtful in the flights on which the ruling rests.
+  const std::vector<std::string>& doubts_of_answer() const;
   /// None: there is no such doubt.
   const FlightsInDoubt* doubt(campaign::Doubt::Kind kind) const;
 };
-/// Whether what is in doubt, or this doubt alone, could have moved a flight over its limits.
+/// Whether what is in doubt, or this doubt alone, could have moved so many flights over their
+/// limits that the ruling would be another one.
 bool is_within_spread(const ConditionVerdict& verdict, const FlightsInDoubt& doubt);
 bool is_within_spread(const ConditionVerdict& verdict);
 

@@ -17,6 +17,9 @@ namespace tether::campaign {
 
 inline constexpr int kCampaignSchemaVersion = 1;
 inline constexpr std::string_view kCampaignFile = "campaign.json";
+/// The campaign in the folder of `tether size` is called this and the scenario's name. Names of
+/// campaign files have no spaces.
+inline constexpr std::string_view kSizePrefix = "size of ";
 
 using Setting = scenario::Setting;
 
