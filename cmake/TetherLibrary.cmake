@@ -171,7 +171,7 @@ function(_tether_add_test_entry target entry filter labels timeout cost)
 endfunction()
 
 # tether_add_library(<name> SOURCES ... [PUBLIC ...] [PRIVATE ...] [TESTS ...] [TEST_LIBS ...]
-#                    [TESTING_SOURCES ...] [LABELS ...] [COST <seconds>] [BUSY])
+#                    [TESTING_SOURCES ...] [LABELS ...] [COST <seconds>] [BUSY] [BUSY_TESTING])
 #
 # Declares a folder of common/, target/ or a wing of host/ as target tether_<name> (alias tether::<name>):
 #   SOURCES         files below src/
@@ -181,8 +181,9 @@ endfunction()
 #                   testing/include
 #   LABELS, COST    of the tests: extra labels input and threaded; see tether_add_test
 #   BUSY            its tests compute for long: see tether_optimise
+#   BUSY_TESTING    the fakes compute for long
 function(tether_add_library name)
-  cmake_parse_arguments(ARG "BUSY" "COST" "SOURCES;PUBLIC;PRIVATE;TESTS;TEST_LIBS;TESTING_SOURCES;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "BUSY;BUSY_TESTING" "COST" "SOURCES;PUBLIC;PRIVATE;TESTS;TEST_LIBS;TESTING_SOURCES;LABELS" ${ARGN})
   set(target tether_${name})
   if(ARG_SOURCES)
     add_library(${target} STATIC ${ARG_SOURCES})
@@ -208,7 +209,11 @@ function(tether_add_library name)
     add_library(${target}_testing STATIC ${ARG_TESTING_SOURCES})
     target_include_directories(${target}_testing PUBLIC testing/include)
     target_link_libraries(${target}_testing PUBLIC ${target} PRIVATE tether_compile_options)
-    tether_optimise(${target}_testing IDLE)
+    if(ARG_BUSY_TESTING)
+      tether_optimise(${target}_testing BUSY)
+    else()
+      tether_optimise(${target}_testing IDLE)
+    endif()
     add_library(tether::${name}_testing ALIAS ${target}_testing)
   endif()
   if(ARG_TESTS)

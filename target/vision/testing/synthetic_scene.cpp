@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include <tether/base/random.h>
@@ -10,20 +11,53 @@ namespace {
 
 using uav::Vec3;
 
+constexpr double kMiss = std::numeric_limits<double>::infinity();
+constexpr double kEverywhere = kMiss;
+
 /// A box as seen from one place, in the box's own frame B.
 struct SeenBox {
   uav::Quat q_BW;
   Vec3 eye_B;
   Vec3 half_m;
   Vec3 color_rgb;
+  /// No ray of a pixel outside of these hits it.
+  double least_u_px = -kEverywhere, most_u_px = kEverywhere;
+  double least_v_px = -kEverywhere, most_v_px = kEverywhere;
+
+  bool is_near(int u, int v) const {
+    return u >= least_u_px && u <= most_u_px && v >= least_v_px && v <= most_v_px;
+  }
 };
 
-SeenBox seen_from(const Vec3& p_W, const SceneBox& box) {
-  const uav::Quat q_BW = inverse(uav::from_axis_angle({0, 0, 1}, box.yaw_rad));
-  return {q_BW, rotate(q_BW, p_W - box.p_W), 0.5 * box.size_m, box.color_rgb};
+/// Where its corners are, unless one is behind the camera, or the lens bends its edges.
+void limit(SeenBox& seen, const uav::CameraModel& camera, const uav::Pose& X_WC) {
+  if (camera.has_distortion()) return;
+  SeenBox near = seen;
+  near.least_u_px = near.least_v_px = kEverywhere;
+  near.most_u_px = near.most_v_px = -kEverywhere;
+  for (const double x : {-seen.half_m.x, seen.half_m.x}) {
+    for (const double y : {-seen.half_m.y, seen.half_m.y}) {
+      for (const double z : {-seen.half_m.z, seen.half_m.z}) {
+        const Vec3 from_eye_B = Vec3{x, y, z} - seen.eye_B;
+        const auto at =
+            camera.project(rotate(inverse(X_WC.q), rotate(inverse(seen.q_BW), from_eye_B)));
+        if (!at) return;
+        near.least_u_px = std::min(near.least_u_px, at->u_px - 1.0);
+        near.most_u_px = std::max(near.most_u_px, at->u_px + 1.0);
+        near.least_v_px = std::min(near.least_v_px, at->v_px - 1.0);
+        near.most_v_px = std::max(near.most_v_px, at->v_px + 1.0);
+      }
+    }
+  }
+  seen = near;
 }
 
-constexpr double kMiss = std::numeric_limits<double>::infinity();
+SeenBox seen_by(const uav::CameraModel& camera, const uav::Pose& X_WC, const SceneBox& box) {
+  const uav::Quat q_BW = inverse(uav::from_axis_angle({0, 0, 1}, box.yaw_rad));
+  SeenBox seen{q_BW, rotate(q_BW, X_WC.p - box.p_W), 0.5 * box.size_m, box.color_rgb};
+  limit(seen, camera, X_WC);
+  return seen;
+}
 
 struct Hit {
   double at = kMiss;  // multiple of the ray's direction
@@ -81,17 +115,20 @@ uav::CameraSample SyntheticScene::render(const uav::CameraModel& camera, const u
   image.width_px = camera.width_px;
   image.height_px = camera.height_px;
   image.rgb.reserve(3 * static_cast<std::size_t>(camera.width_px * camera.height_px));
-  std::vector<SeenBox> seen;
-  for (const SceneBox& box : boxes) seen.push_back(seen_from(X_WC.p, box));
+  std::vector<SeenBox> seen, near;
+  for (const SceneBox& box : boxes) seen.push_back(seen_by(camera, X_WC, box));
   KeyedRandom random({seed, 0, index});
   const auto noise = [&] { return noise_stddev > 0.0 ? noise_stddev * random.normal() : 0.0; };
   for (int v = 0; v < camera.height_px; ++v) {
     for (int u = 0; u < camera.width_px; ++u) {
+      near.clear();
+      std::ranges::copy_if(seen, std::back_inserter(near),
+                           [&](const SeenBox& box) { return box.is_near(u, v); });
       Vec3 sum;
       for (const double dv : {-0.25, 0.25}) {
         for (const double du : {-0.25, 0.25}) {
           const Vec3 d_W = rotate(X_WC.q, camera.unproject({u + du, v + dv}));
-          sum = sum + color_along(d_W, seen);
+          sum = sum + color_along(d_W, near);
         }
       }
       const Vec3 rgb = (255.0 / 4.0) * sum;
