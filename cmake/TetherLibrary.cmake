@@ -77,13 +77,19 @@ if(CMAKE_UNITY_BUILD AND BUILD_TESTING AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   endif()
 endif()
 
-# tether_optimise(<target> [BUSY | IDLE]): what is compiled for the host, and does not compute for long, need not be fast in
-# a test, nor need a library of tests (IDLE). What runs on the target is as shipped: a test of counted work counts it.
+# tether_optimise(<target> [BUSY | SHIPPED | IDLE]): what is compiled for the host, and does not compute for long, need not
+# be fast in a test, nor need a library of tests (IDLE). What runs on the target is as shipped: a test of counted work
+# counts it. SHIPPED is BUSY where it is compiled once and run for long; under the sanitizers of each change, optimising
+# it takes longer than its tests gain.
 function(tether_optimise target)
-  if("BUSY" IN_LIST ARGN AND TETHER_OPTIMISE_BUSY)
-    target_compile_options(${target} PRIVATE ${TETHER_OPTIMISE_BUSY})
-  elseif(TETHER_OPTIMISE_IDLE AND ("IDLE" IN_LIST ARGN OR
-      (NOT "BUSY" IN_LIST ARGN AND CMAKE_CURRENT_SOURCE_DIR MATCHES "/(host|apps/tether)(/|$)")))
+  if(ARGN STREQUAL "BUSY" OR (ARGN STREQUAL "SHIPPED" AND TETHER_SANITIZE MATCHES "fuzzer"))
+    set(busy ${TETHER_OPTIMISE_BUSY})
+  elseif(ARGN STREQUAL "IDLE" OR (NOT ARGN AND CMAKE_CURRENT_SOURCE_DIR MATCHES "/(host|apps/tether)(/|$)"))
+    set(idle ${TETHER_OPTIMISE_IDLE})
+  endif()
+  if(busy)
+    target_compile_options(${target} PRIVATE ${busy})
+  elseif(idle)
     # Optimised that little, the standard library's own code sets this warning off.
     target_compile_options(${target} PRIVATE ${TETHER_OPTIMISE_IDLE} -Wno-maybe-uninitialized)
     if(TARGET tether_idle_library_headers)
@@ -171,7 +177,7 @@ function(_tether_add_test_entry target entry filter labels timeout cost)
 endfunction()
 
 # tether_add_library(<name> SOURCES ... [PUBLIC ...] [PRIVATE ...] [TESTS ...] [TEST_LIBS ...]
-#                    [TESTING_SOURCES ...] [LABELS ...] [COST <seconds>] [BUSY] [BUSY_TESTING])
+#                    [TESTING_SOURCES ...] [LABELS ...] [COST <seconds>] [OPTIMISE <kind>] [OPTIMISE_TESTING <kind>])
 #
 # Declares a folder of common/, target/ or a wing of host/ as target tether_<name> (alias tether::<name>):
 #   SOURCES         files below src/
@@ -180,20 +186,18 @@ endfunction()
 #   TESTING_SOURCES fakes that other folders' tests use, as tether::<name>_testing, with headers in
 #                   testing/include
 #   LABELS, COST    of the tests: extra labels input and threaded; see tether_add_test
-#   BUSY            its tests compute for long: see tether_optimise
-#   BUSY_TESTING    the fakes compute for long
+#   OPTIMISE, OPTIMISE_TESTING   its tests, or its fakes (IDLE by default), compute for long: see tether_optimise
 function(tether_add_library name)
-  cmake_parse_arguments(ARG "BUSY;BUSY_TESTING" "COST" "SOURCES;PUBLIC;PRIVATE;TESTS;TEST_LIBS;TESTING_SOURCES;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "" "COST;OPTIMISE;OPTIMISE_TESTING" "SOURCES;PUBLIC;PRIVATE;TESTS;TEST_LIBS;TESTING_SOURCES;LABELS" ${ARGN})
   set(target tether_${name})
+  if(NOT ARG_OPTIMISE_TESTING)
+    set(ARG_OPTIMISE_TESTING IDLE)
+  endif()
   if(ARG_SOURCES)
     add_library(${target} STATIC ${ARG_SOURCES})
     target_include_directories(${target} PUBLIC include PRIVATE src)
     target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE} tether_compile_options)
-    if(ARG_BUSY)
-      tether_optimise(${target} BUSY)
-    else()
-      tether_optimise(${target})
-    endif()
+    tether_optimise(${target} ${ARG_OPTIMISE})
   else()
     add_library(${target} INTERFACE)
     target_include_directories(${target} INTERFACE include)
@@ -209,11 +213,7 @@ function(tether_add_library name)
     add_library(${target}_testing STATIC ${ARG_TESTING_SOURCES})
     target_include_directories(${target}_testing PUBLIC testing/include)
     target_link_libraries(${target}_testing PUBLIC ${target} PRIVATE tether_compile_options)
-    if(ARG_BUSY_TESTING)
-      tether_optimise(${target}_testing BUSY)
-    else()
-      tether_optimise(${target}_testing IDLE)
-    endif()
+    tether_optimise(${target}_testing ${ARG_OPTIMISE_TESTING})
     add_library(tether::${name}_testing ALIAS ${target}_testing)
   endif()
   if(ARG_TESTS)

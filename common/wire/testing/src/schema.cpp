@@ -22,18 +22,37 @@ std::map<std::string, std::string> kinds_in(const std::string& schema) {
   return kinds;
 }
 
+struct Schema {
+  std::map<std::string, std::string> kinds;
+  std::map<std::string, std::string> bodies;  ///< of tables and structs: what is in the braces
+};
+
+Schema read_schema(const std::string& file) {
+  std::ifstream in(file);
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  const std::string plain = std::regex_replace(text, std::regex("//[^\n]*"), "");
+  Schema schema{kinds_in(plain), {}};
+  const std::regex body(R"((?:table|struct)\s+(\w+)\s*\{([^}]*)\})");
+  for (std::sregex_iterator at(plain.begin(), plain.end(), body), end; at != end; ++at)
+    schema.bodies.emplace((*at)[1], (*at)[2]);
+  return schema;
+}
+
+/// Read once, because regular expressions take long under a sanitizer.
+const Schema& schema_of(const std::string& file) {
+  static std::map<std::string, Schema> known;
+  const auto found = known.find(file);
+  return found != known.end() ? found->second
+                              : known.emplace(file, read_schema(file)).first->second;
+}
+
 }  // namespace
 
 std::vector<std::string> fields_in_schema(const std::string& file, const std::string& name) {
-  std::ifstream in(file);
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
-  const std::string schema = std::regex_replace(text, std::regex("//[^\n]*"), "");
-  const auto kinds = kinds_in(schema);
-  Match body;
-  if (!std::regex_search(schema, body,
-                         std::regex("(table|struct)\\s+" + name + "\\s*\\{([^}]*)\\}")))
-    return {};
-  const std::string inside = body[2];
+  const auto& [kinds, bodies] = schema_of(file);
+  const auto body = bodies.find(name);
+  if (body == bodies.end()) return {};
+  const std::string& inside = body->second;
   std::vector<std::string> fields;
   const std::regex field(R"((\w+)\s*:\s*(\[?)(\w+)(\]?)([^;]*);)");
   for (std::sregex_iterator at(inside.begin(), inside.end(), field), end; at != end; ++at) {
