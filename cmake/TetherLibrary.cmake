@@ -79,8 +79,8 @@ endif()
 
 # tether_optimise(<target> [BUSY | SHIPPED | IDLE]): what is compiled for the host, and does not compute for long, need not
 # be fast in a test, nor need a library of tests (IDLE). What runs on the target is as shipped: a test of counted work
-# counts it. SHIPPED is BUSY where it is compiled once and run for long; under the sanitizers of each change, optimising
-# it takes longer than its tests gain.
+# counts it. SHIPPED is BUSY, except under the sanitizers of each change: there, to optimise it takes longer than its
+# tests gain.
 function(tether_optimise target)
   if(ARGN STREQUAL "BUSY" OR (ARGN STREQUAL "SHIPPED" AND TETHER_SANITIZE MATCHES "fuzzer"))
     set(busy ${TETHER_OPTIMISE_BUSY})
