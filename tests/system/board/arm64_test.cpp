@@ -84,7 +84,7 @@ TEST_F(Arm64, IsTheSameToTheByteUnderTheCountedClock) {
                    {"\"Nehalem\"", "\"cortex-a72\"\nprogram_folder = " + quoted("build/arm64/bin") +
                                        "\nsysroot = " + quoted("build/sysroot-arm64")}}));
   const auto scenario = write_shipped_scenario(folder_.path(), "face_anchor",
-                                               {{"\ntime_limit_s = 60", "\ntime_limit_s = 0.4"}});
+                                               {{"\ntime_limit_s = 60", "\ntime_limit_s = 0.25"}});
   for (const std::string out : {"first", "second"}) {
     const Output output = run(tether({"run", scenario, "--condition", "host", "--target", target,
                                       "--out", folder_ / out, "--quiet"}),
