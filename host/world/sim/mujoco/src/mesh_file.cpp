@@ -202,8 +202,8 @@ class MeshCollector {
 
   std::array<float, 2> laid(const aiVector3D& uv) const {
     if (texture_.over == TextureRepeat::kPerMetre) return {uv.x, uv.y};
-    return {uv.x * static_cast<float>(texture_.repeat_x),
-            uv.y * static_cast<float>(texture_.repeat_y)};
+    return {static_cast<float>(texture_.left()) + uv.x * static_cast<float>(texture_.repeat_x),
+            static_cast<float>(texture_.top()) + uv.y * static_cast<float>(texture_.repeat_y)};
   }
 
   // A box's mapping: seen along the axis that the surface faces most.

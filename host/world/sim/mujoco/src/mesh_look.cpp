@@ -29,7 +29,7 @@ constexpr int kPaletteSize = 512;  // kSteps³ pixels
 
 // Of a library of materials: colours, and how opaque or transparent a surface is.
 const std::map<std::string, std::size_t, std::less<>> kNumbersOfLibraries = {
-    {"Kd", 3}, {"Ks", 3}, {"Ke", 3}, {"d", 1}, {"Tr", 1}};
+    {"Ka", 3}, {"Kd", 3}, {"Ks", 3}, {"Ke", 3}, {"d", 1}, {"Tr", 1}};
 
 // Some writers have colours brighter than white, or no numbers.
 double share(double value) {
@@ -76,6 +76,20 @@ raster::Texture embedded(const aiTexture& picture, const std::filesystem::path& 
 bool is_gltf(const std::filesystem::path& file) {
   const std::string type = file_name(file.extension().string());
   return type == ".glb" || type == ".gltf";
+}
+
+bool is_collada(const std::filesystem::path& file) {
+  return file_name(file.extension().string()) == ".dae";
+}
+
+// As Gazebo takes it: that of the file, which for COLLADA is 0.4 if there is none (Assimp then says
+// 0.1), and 0 in a library of materials. glTF has none.
+Vec3 ambient(const aiMaterial& material, const std::filesystem::path& file, const Vec3& diffuse) {
+  if (is_gltf(file)) return diffuse;
+  const Vec3 said = colour(material, AI_MATKEY_COLOR_AMBIENT, {});
+  const auto is_default = [](double value) { return std::abs(value - 0.1) < 1e-6; };
+  const bool is_missing = is_default(said.x) && is_default(said.y) && is_default(said.z);
+  return is_missing && is_collada(file) ? Vec3{0.4, 0.4, 0.4} : said;
 }
 
 // Assimp's own, where a file has none.
@@ -147,7 +161,10 @@ MeshLook read_look(const aiScene& scene, const aiMaterial& material, const MeshG
                    const WarningSink& warn) {
   MeshLook look;
   Material& out = look.material;
-  if (is_of_reader(material)) return look;
+  if (is_of_reader(material)) {
+    out.diffuse_rgb = out.ambient_rgb = {1.0, 1.0, 1.0};
+    return look;
+  }
   const std::string picture = picture_of(material);
   out.diffuse_rgb = colour(material, AI_MATKEY_COLOR_DIFFUSE, out.diffuse_rgb);
   out.specular_rgb = colour(material, AI_MATKEY_COLOR_SPECULAR, {});
@@ -181,11 +198,11 @@ MeshLook read_look(const aiScene& scene, const aiMaterial& material, const MeshG
                 "', which is not found beside it as a PNG or JPEG file; its colours are used",
             true});
     }
-    // A picture shows as it is; only glTF tints it.
+    // In COLLADA, it takes the place of the colour.
     const bool is_shown = look.picture || !out.albedo_map.empty();
-    if (is_shown && !is_gltf(mesh.file)) out.diffuse_rgb = {1.0, 1.0, 1.0};
+    if (is_shown && is_collada(mesh.file)) out.diffuse_rgb = {1.0, 1.0, 1.0};
   }
-  out.ambient_rgb = out.diffuse_rgb;
+  out.ambient_rgb = ambient(material, mesh.file, out.diffuse_rgb);
   return look;
 }
 

@@ -52,8 +52,8 @@ void add_rectangle(raster::Mesh& mesh, const Vec3& centre, const Vec3& right, do
   for (const double y : {0.0, height_m}) {
     for (const double x : {0.0, width_m}) {
       mesh.vertices.push_back(make_vertex(corner + x * right + y * down, normal,
-                                          x > 0.0 ? scale.across(x) : 0.0,
-                                          y > 0.0 ? scale.down(y) : 0.0));
+                                          scale.left() + (x > 0.0 ? scale.across(x) : 0.0),
+                                          scale.top() + (y > 0.0 ? scale.down(y) : 0.0)));
     }
   }
   add_lattice_triangles(mesh, first, 1, 1);
@@ -79,11 +79,12 @@ void add_revolution(raster::Mesh& mesh, const std::vector<Ring>& profile, double
       const double angle = 2.0 * std::numbers::pi * i / kSlices;
       const double c = std::cos(angle);
       const double s = std::sin(angle);
-      mesh.vertices.push_back(make_vertex(
-          {ring.radius_m * c, ring.radius_m * s, ring.z_m},
-          {ring.normal_r * c, ring.normal_r * s, ring.normal_z},
-          is_per_face ? scale.repeat_x * i / kSlices : angle * texture_radius_m * scale.repeat_x,
-          ring.distance_m / whole * scale.repeat_y));
+      mesh.vertices.push_back(
+          make_vertex({ring.radius_m * c, ring.radius_m * s, ring.z_m},
+                      {ring.normal_r * c, ring.normal_r * s, ring.normal_z},
+                      scale.left() + (is_per_face ? scale.repeat_x * i / kSlices
+                                                  : angle * texture_radius_m * scale.repeat_x),
+                      scale.top() + ring.distance_m / whole * scale.repeat_y));
     }
   }
   add_lattice_triangles(mesh, first, static_cast<int>(profile.size()) - 1, kSlices);

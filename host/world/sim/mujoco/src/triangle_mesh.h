@@ -16,7 +16,14 @@ struct TextureScale {
   double across(double length_m) const { return repeat_x * count(length_m); }
   double down(double length_m) const { return repeat_y * count(length_m); }
 
+  /// Where the texture begins: repetitions over a face are counted from its middle, as OGRE does.
+  double left() const { return begin(repeat_x); }
+  double top() const { return begin(repeat_y); }
+
  private:
+  double begin(double repeat) const {
+    return over == TextureRepeat::kPerMetre ? 0.0 : 0.5 - 0.5 * repeat;
+  }
   double count(double length_m) const { return over == TextureRepeat::kPerMetre ? length_m : 1.0; }
 };
 

@@ -47,17 +47,18 @@ constexpr const char* kTwoColours =
 TEST(MeshLookTest, PartsOfAnObjFileHaveTheColoursOfItsLibrary) {
   const ScratchFolder folder;
   const auto library = folder.write("paints.mtl",
-                                    "newmtl red\nKd 1 0 0\nKs 0.25 0.25 0.25\n"
+                                    "newmtl red\nKa 0.5 0 0\nKd 1 0 0\nKs 0.25 0.25 0.25\n"
                                     "newmtl glass\nKd 0 0 1\nd 0.5\n");
   const auto mesh = folder.write("a.obj", kTwoColours);
   const Loaded loaded = load(mesh, {library});
   ASSERT_EQ(loaded.parts.size(), 2U);
   const Material& red = loaded.parts[0].look.material;
   EXPECT_EQ(red.diffuse_rgb, (Vec3{1.0, 0.0, 0.0}));
-  EXPECT_EQ(red.ambient_rgb, red.diffuse_rgb);
+  EXPECT_EQ(red.ambient_rgb, (Vec3{0.5, 0.0, 0.0}));
   EXPECT_EQ(red.specular_rgb, (Vec3{0.25, 0.25, 0.25}));
   const Material& glass = loaded.parts[1].look.material;
   EXPECT_EQ(glass.diffuse_rgb, (Vec3{0.0, 0.0, 1.0}));
+  EXPECT_EQ(glass.ambient_rgb, (Vec3{0.0, 0.0, 0.0}));  // as Gazebo takes it
   EXPECT_EQ(glass.alpha, 0.5);
   EXPECT_EQ(loaded.parts[1].mesh.triangles.size(), 1U);
   EXPECT_THAT(loaded.warnings, IsEmpty());
@@ -82,7 +83,7 @@ TEST(MeshLookTest, WithoutItsLibraryAnObjFileIsGrey) {
     EXPECT_EQ(part.look.material.diffuse_rgb.x, part.look.material.diffuse_rgb.y);
 }
 
-TEST(MeshLookTest, PicturesAreFoundByTheirFileNameAndShowAsTheyAre) {
+TEST(MeshLookTest, PicturesAreFoundByTheirFileNameAndAreTinted) {
   const ScratchFolder folder;
   const auto png = folder.write("Two Walls.PNG", picture());
   const auto library = folder.write(
@@ -92,7 +93,7 @@ TEST(MeshLookTest, PicturesAreFoundByTheirFileNameAndShowAsTheyAre) {
   const Loaded loaded = load(folder.write("a.obj", kTwoColours), {library, png});
   ASSERT_EQ(loaded.parts.size(), 2U);
   EXPECT_EQ(loaded.parts[0].look.material.albedo_map, png);
-  EXPECT_EQ(loaded.parts[0].look.material.diffuse_rgb, (Vec3{1.0, 1.0, 1.0}));
+  EXPECT_NEAR(loaded.parts[0].look.material.diffuse_rgb.x, 0.2, 1e-6);
   EXPECT_EQ(loaded.parts[1].look.material.albedo_map, "");
   EXPECT_EQ(loaded.parts[1].look.material.diffuse_rgb, (Vec3{0.0, 0.0, 1.0}));
   EXPECT_THAT(loaded.warnings, ElementsAre(HasSubstr("'gone.png'")));
@@ -180,6 +181,36 @@ TEST(MeshLookTest, EachStepOfThePaletteIsItsColour) {
   EXPECT_EQ(colours->rgba.size(), std::size_t{4} * 64 * 64 * 64);
   EXPECT_EQ(colours->rgba[0], 0);
   EXPECT_EQ(colours->rgba[colours->rgba.size() - 2], 255);
+}
+
+// A triangle with this <lambert>.
+std::string collada_triangle(const std::string& lambert) {
+  return R"(<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<library_effects><effect id="e"><profile_COMMON><technique sid="t"><lambert>)" +
+         lambert + R"(</lambert></technique></profile_COMMON></effect></library_effects>
+<library_materials><material id="m"><instance_effect url="#e"/></material></library_materials>
+<library_geometries><geometry id="g"><mesh>
+<source id="s"><float_array id="a" count="9">0 0 0 1 0 0 0 1 0</float_array><technique_common>
+<accessor source="#a" count="3" stride="3"><param name="X" type="float"/><param name="Y" type="float"/>
+<param name="Z" type="float"/></accessor></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#s"/></vertices><triangles count="1" material="p">
+<input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2</p></triangles></mesh></geometry></library_geometries>
+<library_visual_scenes><visual_scene id="c"><node><instance_geometry url="#g"><bind_material>
+<technique_common><instance_material symbol="p" target="#m"/></technique_common></bind_material>
+</instance_geometry></node></visual_scene></library_visual_scenes>
+<scene><instance_visual_scene url="#c"/></scene></COLLADA>)";
+}
+
+TEST(MeshLookTest, ColladaHasAnAmbientColourOfItsOwnOrThatOfGazebo) {
+  const ScratchFolder folder;
+  const std::string diffuse = "<diffuse><color>0.5 0.5 0.5 1</color></diffuse>";
+  for (const auto& [ambient, expected] : std::vector<std::pair<std::string, double>>{
+           {"", 0.4}, {"<ambient><color>0.2 0.2 0.2 1</color></ambient>", 0.2}}) {
+    const Loaded loaded = load(folder.write("a.dae", collada_triangle(ambient + diffuse)));
+    ASSERT_EQ(loaded.parts.size(), 1U);
+    EXPECT_NEAR(loaded.parts[0].look.material.ambient_rgb.x, expected, 1e-6);
+    EXPECT_NEAR(loaded.parts[0].look.material.diffuse_rgb.x, 0.5, 1e-6);
+  }
 }
 
 }  // namespace

@@ -87,7 +87,7 @@ TEST(TriangleMeshTest, OnceOnEachFaceAsGazeboHasIt) {
   }
   const TextureScale twice{2.0, 1.0, TextureRepeat::kPerFace};
   for (const raster::Mesh::Vertex& v : plane_mesh({{0.0, 0.0, 1.0}, 4.0, 10.0}, twice).vertices) {
-    EXPECT_NEAR(v.uv[0], 2.0F * (0.5F + v.position[0] / 4.0F), 1e-6);
+    EXPECT_NEAR(v.uv[0], 0.5F + 2.0F * v.position[0] / 4.0F, 1e-6);  // from the middle
     EXPECT_NEAR(v.uv[1], 0.5F - v.position[1] / 10.0F, 1e-6);
   }
   for (const raster::Mesh& mesh : {cylinder_mesh(0.5, 4.0, once), capsule_mesh(0.5, 1.0, once),

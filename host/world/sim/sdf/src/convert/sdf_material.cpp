@@ -114,7 +114,6 @@ bool read_script_material(const SdfSource& source, const sdf::ElementPtr& script
   } else if (const auto shipped = source.find(script, "model://textures/" + named.texture)) {
     material.albedo_map = source.use(*shipped);
     material.albedo_map_at = source.where(script);
-    material.diffuse_rgb = material.ambient_rgb = white;
   }
   return true;
 }

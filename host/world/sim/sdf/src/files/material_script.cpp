@@ -213,7 +213,8 @@ struct Named {
   double alpha = 1.0;
   const char* texture = "";
 };
-constexpr Vec3 kAsphalt{0.27, 0.27, 0.28}, kPaving{0.55, 0.54, 0.52};
+constexpr Vec3 kRoad_ambient = grey(0.04), kRoad = grey(0.33), kStreet{0.38, 0.36, 0.34},
+               kPaving{0.47, 0.47, 0.42};
 
 /// Without "Gazebo/".
 constexpr Named kGazebo[] = {
@@ -261,29 +262,30 @@ constexpr Named kGazebo[] = {
     {"LightOff", {1, 0, 0}, {1, 0, 0}, {}, {1, 0, 0}},
     {"PioneerBody", {0.5, 0, 0}, {1, 0, 0}, {0.5, 0, 0}, {}},
     {"Pioneer2Body", {0.48, 0, 0}, {0.68, 0, 0}, grey(0.5), {}},
-    {"Wood", {0.61, 0.43, 0.27}, {0.61, 0.43, 0.27}, grey(0.2), {}, 1.0, "wood.png"},
-    {"WoodPallet", {0.61, 0.43, 0.27}, {0.61, 0.43, 0.27}, {}, {}, 1.0, "planks.png"},
-    {"WoodFloor", {0.61, 0.43, 0.27}, {0.61, 0.43, 0.27}, {}, {}, 1.0, "planks.png"},
-    {"Bricks", {0.6, 0.36, 0.28}, {0.6, 0.36, 0.28}, grey(0.2), {}, 1.0, "brick.png"},
-    {"PaintedWall", grey(0.85), grey(0.85), {}, {}, 1.0, "plaster.png"},
-    {"CeilingTiled", grey(0.85), grey(0.85), {}, {}, 1.0, "ceiling.png"},
-    {"BuildingFrame", grey(0.6), grey(0.6), {}, {}},
-    {"Grass", {0.29, 0.42, 0.16}, {0.29, 0.42, 0.16}, {}, {}},
-    {"Road", kAsphalt, kAsphalt, {}, {}},
-    {"Runway", kAsphalt, kAsphalt, {}, {}},
-    {"Residential", kAsphalt, kAsphalt, {}, {}},
-    {"Tertiary", kAsphalt, kAsphalt, {}, {}},
-    {"Motorway", kAsphalt, kAsphalt, {}, {}},
-    {"Trunk", kAsphalt, kAsphalt, {}, {}},
-    {"Primary", kAsphalt, kAsphalt, {}, {}},
-    {"Secondary", kAsphalt, kAsphalt, {}, {}},
-    {"Lane_1", kAsphalt, kAsphalt, {}, {}},
-    {"Lanes_2", kAsphalt, kAsphalt, {}, {}},
-    {"Lanes_4", kAsphalt, kAsphalt, {}, {}},
-    {"Lanes_6", kAsphalt, kAsphalt, {}, {}},
-    {"Pedestrian", kPaving, kPaving, {}, {}},
-    {"Footway", kPaving, kPaving, {}, {}},
-    {"Steps", kPaving, kPaving, {}, {}},
+    // These show a picture of Gazebo's. With Tether's own, or without, they have its mean colour.
+    {"Wood", {0.88, 0.6, 0.33}, {0.88, 0.6, 0.33}, grey(0.2), {}, 1.0, "wood.png"},
+    {"WoodPallet", {0.34, 0.25, 0.13}, {0.67, 0.49, 0.25}, {}, {}, 1.0, "planks.png"},
+    {"WoodFloor", {0.33, 0.16, 0.03}, {0.67, 0.32, 0.07}, {}, {}, 1.0, "planks.png"},
+    {"Bricks", {0.68, 0.47, 0.48}, {0.68, 0.47, 0.48}, grey(0.2), {}, 1.0, "brick.png"},
+    {"PaintedWall", {0.95, 0.82, 0.5}, {0.95, 0.82, 0.5}, {}, {}, 1.0, "plaster.png"},
+    {"CeilingTiled", grey(0.49), grey(0.97), {}, {}, 1.0, "ceiling.png"},
+    {"BuildingFrame", grey(0.64), grey(0.64), {}, {}},
+    {"Grass", {0.12, 0.24, 0.03}, {0.25, 0.48, 0.05}, {}, {}},
+    {"Runway", grey(0.2), grey(0.4), {}, {}},
+    {"Road", kRoad_ambient, kRoad, {}, {}},
+    {"Primary", kRoad_ambient, kRoad, {}, {}},
+    {"Motorway", kRoad_ambient, kRoad, {}, {}},
+    {"Lanes_2", kRoad_ambient, kRoad, {}, {}},
+    {"Lanes_6", kRoad_ambient, kRoad, {}, {}},
+    {"Residential", kRoad_ambient, kStreet, {}, {}},
+    {"Tertiary", kRoad_ambient, kStreet, {}, {}},
+    {"Trunk", kRoad_ambient, kStreet, {}, {}},
+    {"Secondary", kRoad_ambient, kStreet, {}, {}},
+    {"Lane_1", kRoad_ambient, kStreet, {}, {}},
+    {"Lanes_4", kRoad_ambient, kStreet, {}, {}},
+    {"Steps", kRoad_ambient, kStreet, {}, {}},
+    {"Pedestrian", kRoad_ambient, kPaving, {}, {}},
+    {"Footway", kRoad_ambient, kPaving, {}, {}},
 };
 
 ScriptMaterials gazebo_materials() {
