@@ -140,6 +140,27 @@ void read_scene(const sdf::Scene* scene, World& world) {
   for (Light& light : world.lights) light.cast_shadows = false;
 }
 
+constexpr double kFarthest_m = 1e5;
+
+/// Where the models were when the world was saved: Gazebo 11 puts them there.
+void apply_state(const SdfSource& source, World& world) {
+  const sdf::ElementPtr state = source.element()->GetElement("world")->FindElement("state");
+  if (!state) return;
+  for (sdf::ElementPtr saved = state->FindElement("model"); saved;
+       saved = saved->GetNextElement("model")) {
+    const std::string name = name_attribute(saved);
+    const sdf::ElementPtr pose = saved->FindElement("pose");
+    const auto model = std::ranges::find(world.models, name, &Model::name);
+    if (!pose || model == world.models.end()) continue;
+    const Pose X_WM = to_pose(pose->Get<ignition::math::Pose3d>());
+    if (!(uav::norm(X_WM.p) <= kFarthest_m)) continue;  // it fell for ever
+    const Pose X_new_old = X_WM * uav::inverse(model->X_WM);
+    for (Model& part : world.models)
+      if (part.name == name || part.name.starts_with(name + "::"))
+        part.X_WM = X_new_old * part.X_WM;
+  }
+}
+
 World read_world(const SdfSource& source, const WarningSink& warn) {
   if (source.root().WorldCount() == 0 && source.root().Model() != nullptr)
     throw Error(ErrorCode::kBadFile, {source.file().string(), 0},
@@ -167,6 +188,7 @@ World read_world(const SdfSource& source, const WarningSink& warn) {
     world.lights.push_back(read_light(source, *sdf_world.LightByIndex(i), {}));
   }
   read_scene(sdf_world.Scene(), world);
+  apply_state(source, world);
   return world;
 }
 

@@ -43,6 +43,21 @@ TEST(LoadWorld, PutsAModelWhereItsFrameSays) {
   expect_near((X_WL * model.links[0].visuals[0].X_LV).p, {1.0, 2.5, 5.0});
 }
 
+TEST(LoadWorld, PutsModelsWhereTheyWereWhenTheWorldWasSaved) {
+  const Loaded loaded = load_content(R"(
+      <model name='m'><pose>1 0 0 0 0 0</pose><link name='l'/>
+        <model name='n'><pose>0 1 0 0 0 0</pose><link name='l'/></model></model>
+      <model name='fell'><pose>1 0 0 0 0 0</pose><link name='l'/></model>
+      <state world_name='w'>
+        <model name='m'><pose>3 0 0 0 0 1.5707963267948966</pose><link name='l'/></model>
+        <model name='fell'><pose>0 0 -1e9 0 0 0</pose></model>
+        <model name='gone'><pose>0 0 0 0 0 0</pose></model></state>)");
+  ASSERT_EQ(loaded.world.models.size(), 3u);
+  expect_near(loaded.world.models[0].X_WM.p, {3.0, 0.0, 0.0});
+  expect_near(loaded.world.models[1].X_WM.p, {2.0, 0.0, 0.0});
+  expect_near(loaded.world.models[2].X_WM.p, {1.0, 0.0, 0.0});
+}
+
 TEST(LoadWorld, ReadsPhysicsAirSceneAndLights) {
   const Loaded loaded = load_content(R"(
       <physics name='p' type='ode'><max_step_size>0.002</max_step_size>

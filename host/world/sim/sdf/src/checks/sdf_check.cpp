@@ -27,7 +27,8 @@ const ElementTable kElements = {
     {"sdf", {"world", "model"}},
     {"world",
      {"physics", "gravity", "scene", "light", "model", "frame", "spherical_coordinates",
-      "magnetic_field"}},
+      "magnetic_field", "state"}},
+    {"state", {"model"}},
     {"spherical_coordinates",
      {"surface_model", "world_frame_orientation", "latitude_deg", "longitude_deg", "elevation",
       "heading_deg"}},
@@ -113,6 +114,7 @@ const ElementTable kWithoutEffect = {
     {"world", {"gui"}},
     {"physics", {"real_time_factor", "real_time_update_rate"}},
     {"scene", {"grid", "origin_visual"}},
+    {"visual", {"meta"}},
     {"model", {"allow_auto_disable"}},
     {"sensor", {"always_on", "visualize", "topic", "gz_frame_id", "ignition_frame_id"}},
     {"camera", {"optical_frame_id"}},
@@ -130,7 +132,7 @@ const Names kFinePoints = {"normal_map", "roughness_map",  "metalness_map",
 const Names kDispensable = {"visual", "collision", "light", "material"};
 
 /// What of these is represented is not told by their children.
-const Names kLeaves = {"tether:multirotor", "joint", "plugin", "sky"};
+const Names kLeaves = {"tether:multirotor", "joint", "plugin", "sky", "state"};
 
 /// Sensor types that Tether represents.
 const Names kSensorTypes = {"camera",
@@ -321,6 +323,7 @@ class Walk {
   bool is_represented(const std::string& parent, const sdf::ElementPtr& element) const {
     const std::string& name = element->GetName();
     if (contains(kWithoutEffect, parent, name) || is_own_plugin(element)) return false;
+    if (!is_known(purpose_, parent, name) && says_nothing(element)) return false;
     if (name == "inertial" && is_in_static_model(element)) return false;
     if (purpose_ == SdfPurpose::kUav && parent == "model" &&
         (is_odometry_plugin(element) || motor_plugin(element) != MotorPlugin::kNone))

@@ -4,6 +4,7 @@
 #include <array>
 #include <cctype>
 #include <map>
+#include <set>
 #include <string_view>
 
 namespace tether::sim {
@@ -114,18 +115,19 @@ Effect effect_of_plugin(const sdf::ElementPtr& plugin, SdfPurpose purpose) {
   return is_known ? Consequence::kNoEffect : Consequence::kBehavesDifferent;
 }
 
+bool is_default(const sdf::ParamPtr& value) {
+  sdf::ParamPtr otherwise = value->Clone();
+  otherwise->Reset();
+  bool is_on = false, is_on_otherwise = false;
+  const bool is_switch =
+      value->GetTypeName() == "bool" && value->Get(is_on) && otherwise->Get(is_on_otherwise);
+  return is_switch ? is_on == is_on_otherwise : value->GetAsString() == otherwise->GetAsString();
+}
+
 /// Whether an element says what holds without it, and so do all elements in it.
 bool is_as_without(const sdf::ElementPtr& element) {
   if (!name_attribute(element).empty()) return false;
-  if (const sdf::ParamPtr value = element->GetValue()) {
-    sdf::ParamPtr otherwise = value->Clone();
-    otherwise->Reset();
-    bool is_on = false, is_on_otherwise = false;
-    const bool is_switch =
-        value->GetTypeName() == "bool" && value->Get(is_on) && otherwise->Get(is_on_otherwise);
-    if (is_switch ? is_on != is_on_otherwise : value->GetAsString() != otherwise->GetAsString())
-      return false;
-  }
+  if (const sdf::ParamPtr value = element->GetValue(); value && !is_default(value)) return false;
   bool is_same = true;
   for_each_child(element,
                  [&](const sdf::ElementPtr& child) { is_same = is_same && is_as_without(child); });
@@ -145,6 +147,19 @@ bool is_in_static_model(const sdf::ElementPtr& element) {
   for (sdf::ElementPtr e = element->GetParent(); e; e = e->GetParent())
     if (e->GetName() == "model" && e->Get<bool>("static", false).first) return true;
   return false;
+}
+
+bool says_nothing(const sdf::ElementPtr& element) {
+  const std::string& name = element->GetName();
+  if (!element->GetParent()->HasElementDescription(name) || !is_as_without(element)) return false;
+  for (std::size_t i = 0; i < element->GetAttributeCount(); ++i)
+    if (!is_default(element->GetAttribute(static_cast<unsigned>(i)))) return false;
+  // <sky/> and <wind/> say something by being there.
+  static const std::set<std::string, std::less<>> kSettings = {
+      "atmosphere", "bounce",       "contact",      "enable_wind",   "fdir1",        "friction",
+      "gravity",    "kinematic",    "max_contacts", "mu2",           "self_collide", "slip1",
+      "slip2",      "soft_contact", "torsional",    "velocity_decay"};
+  return kSettings.contains(name);
 }
 
 Effect effect_without(const sdf::ElementPtr& element, SdfPurpose purpose) {

@@ -25,6 +25,10 @@ struct Effect {
 /// without it, or is about the motion of a static model, changes no verdict.
 Effect effect_without(const sdf::ElementPtr& element, SdfPurpose purpose);
 
+/// Whether an element that Tether does not represent says what holds without it, so that nobody
+/// needs to know that it was left out.
+bool says_nothing(const sdf::ElementPtr& element);
+
 /// Whether an element is in a model that is static or is nested in one that is.
 bool is_in_static_model(const sdf::ElementPtr& element);
 

@@ -29,6 +29,15 @@ void add_parts(const SdfSource& source, const sdf::Model& model, const std::stri
   }
 }
 
+/// "lidar" of the link "vehicle::lidar::link"; empty: of the outermost model.
+std::string nested_in(const Part& part) {
+  const std::size_t end = part.name.size() - part.link->Name().size();
+  if (end < 2) return "";
+  const std::string scope = part.name.substr(0, end - 2);
+  const std::size_t before = scope.rfind("::");
+  return before == std::string::npos ? scope : scope.substr(before + 2);
+}
+
 /// The first link, or the one named base_link.
 const Part& find_body(const SdfSource& source, const sdf::Model& model,
                       const std::vector<Part>& parts) {
@@ -95,8 +104,22 @@ bool can_be_turned(uav::SensorKind kind) {
          kind == uav::SensorKind::kScan;
 }
 
+/// A sensor of a nested model whose name is taken gets that of its model before it.
+void make_distinct(const SdfSource& source, const sdf::ElementPtr& element,
+                   const std::string& scope, const WarningSink& warn, const Uav& uav,
+                   Sensor& sensor) {
+  const auto is_taken = [&] {
+    return std::ranges::find(uav.sensors, sensor.name, &Sensor::name) != uav.sensors.end();
+  };
+  if (scope.empty() || !is_taken()) return;
+  sensor.name = scope + "_" + sensor.name;
+  warn_at(source, element, Consequence::kBehavesDifferent,
+          "has the name of another sensor; its name is '" + sensor.name + "'", warn);
+}
+
+/// @param scope of the link's model, if that is nested
 void add_sensors(const SdfSource& source, const sdf::Link& link, const uav::Pose& X_BL,
-                 std::size_t joints, const WarningSink& warn, Uav& uav) {
+                 std::size_t joints, const std::string& scope, const WarningSink& warn, Uav& uav) {
   for (std::uint64_t i = 0; i < link.SensorCount(); ++i) {
     auto sensor = read_sensor(source, *link.SensorByIndex(i), X_BL, warn);
     if (!sensor) continue;
@@ -108,6 +131,7 @@ void add_sensors(const SdfSource& source, const sdf::Link& link, const uav::Pose
       continue;
     }
     sensor->joints = joints;
+    make_distinct(source, link.SensorByIndex(i)->Element(), scope, warn, uav, *sensor);
     uav.sensors.push_back(std::move(*sensor));
   }
 }
@@ -138,8 +162,10 @@ void add_mass(const Link& part, const uav::Pose& X_BL, Uav& uav) {
 /// collides as if these were at 0.
 /// @param is_weighed the body's mass contains it; else the body's inertia is, as it is written,
 /// that of the whole airframe
+/// @param scope of the link's model, if that is nested
 void merge_link(const SdfSource& source, const sdf::Link& part, const uav::Pose& X_BM,
-                std::size_t joints, bool is_weighed, const WarningSink& warn, Uav& uav) {
+                std::size_t joints, bool is_weighed, const WarningSink& warn, Uav& uav,
+                const std::string& scope = "") {
   Link link = read_link(source, part, warn);
   const uav::Pose X_BL = X_BM * link.X_ML;
   for (Visual& visual : link.visuals) {
@@ -153,7 +179,7 @@ void merge_link(const SdfSource& source, const sdf::Link& part, const uav::Pose&
     collision.X_LC = X_BL * collision.X_LC;
     uav.body.collisions.push_back(std::move(collision));
   }
-  add_sensors(source, part, X_BL, joints, warn, uav);
+  add_sensors(source, part, X_BL, joints, scope, warn, uav);
   // The body's mass is that of all that is fixed to it: only a payload that it does not include
   // flies differently. A link without a mass has SDF's, which nobody weighed.
   const sdf::ElementPtr inertial = part.Element()->FindElement("inertial");
@@ -219,13 +245,14 @@ Uav read_uav(const SdfSource& source, double gravity_m_s2, const WarningSink& wa
   const std::set<std::string> of_rotors = read_airframe(source, *model, parts, gravity_m_s2, uav);
   uav.battery = read_battery(source, model->Element());
   const uav::Pose X_BM = uav::inverse(uav.body.X_ML);
-  add_sensors(source, *body.link, X_BM * X_ML, 0, warn, uav);
+  add_sensors(source, *body.link, X_BM * X_ML, 0, "", warn, uav);
   if (is_welded) {
     Joints joints = read_joints(source, *model, body.name, X_BM, of_rotors);
     uav.joints = std::move(joints.chain);
     for (const Part& part : parts)
       if (part.link != body.link)
-        merge_link(source, *part.link, X_BM * part.X_MN, joints.behind[part.name], true, warn, uav);
+        merge_link(source, *part.link, X_BM * part.X_MN, joints.behind[part.name], true, warn, uav,
+                   nested_in(part));
   } else {
     add_links(source, *model, *body.link, warn, uav);
   }

@@ -122,6 +122,20 @@ TEST_F(SdfMotors, LeaveJointsThatProgramsTurn) {
   EXPECT_THAT(warnings(uav_file), Not(Contains(HasSubstr("joint"))));
 }
 
+// As PX4's models do it: each lidar has a sensor of one name.
+TEST_F(SdfMotors, NestedModelsHaveSensorsOfTheirOwn) {
+  const std::string file =
+      with(with_motor_models(), "</model>",
+           "<model name='box'><link name='l'><sensor name='imu' type='imu'/></link></model>"
+           "<joint name='fix' type='fixed'><parent>base_link</parent><child>box::l</child></joint>"
+           "</model>");
+  const Uav uav = read(file);
+  ASSERT_EQ(uav.sensors.size(), 2u);
+  EXPECT_EQ(uav.sensors[0].name, "imu");
+  EXPECT_EQ(uav.sensors[1].name, "box_imu");
+  EXPECT_THAT(warnings(file), Contains(HasSubstr("its name is 'box_imu'")));
+}
+
 /// Rotors of ArduPilot's models: two blades each, and in a model that is nested.
 std::string with_channels(const std::string& cp = "0.1 0 0") {
   std::string content = "<model name='inner'>" + frame() + "</model>\n";
