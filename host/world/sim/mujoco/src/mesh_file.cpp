@@ -6,7 +6,9 @@
 #include "collada_check.h"
 #include "conversions.h"
 #include "gltf_check.h"
+#include "heightmap.h"
 #include "obj_check.h"
+#include "texture_file.h"
 
 #include <algorithm>
 #include <cmath>
@@ -324,18 +326,29 @@ class MeshBytes : public Assimp::MemoryIOSystem {
 }  // namespace
 
 struct MeshFiles::Imported {
-  explicit Imported(const MeshGeometry& mesh) : companions(mesh) { read(mesh.file); }
+  explicit Imported(const MeshGeometry& mesh) : companions(mesh) {
+    if (mesh.made) {
+      read(mesh.file, *mesh.made, ".obj");
+      return;
+    }
+    std::string bytes = os::read_file(mesh.file, kLargestMesh);
+    std::string type = type_of(mesh.file);
+    if (type == ".png" || type == ".jpg" || type == ".jpeg") {
+      bytes = obj_of_heights(decode_texture(bytes, mesh.file, [](const Warning&) {}));
+      type = ".obj";
+    }
+    read(mesh.file, std::move(bytes), type);
+  }
 
   CompanionFiles companions;
   Assimp::Importer importer;
 
  private:
-  void read(const std::filesystem::path& file);
+  void read(const std::filesystem::path& file, std::string bytes, const std::string& type);
 };
 
-void MeshFiles::Imported::read(const std::filesystem::path& file) try {
-  std::string bytes = os::read_file(file, kLargestMesh);
-  const std::string type = type_of(file);
+void MeshFiles::Imported::read(const std::filesystem::path& file, std::string bytes,
+                               const std::string& type) try {
   if (type == ".dae") check_collada(bytes, file);
   if (type == ".obj") check_obj(bytes, file);
   if (type == ".glb" || type == ".gltf") check_gltf(bytes, bytes.size() + companions.bytes(), file);

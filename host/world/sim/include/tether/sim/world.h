@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -49,14 +50,18 @@ struct PlaneGeometry {
   double size_y_m = 0.0;
 };
 struct MeshGeometry {
-  std::filesystem::path file;  ///< absolute, exists: .obj, .stl, .dae, .glb or .gltf
-  std::string submesh;         ///< empty: all
+  /// Absolute, exists: .obj, .stl, .dae, .glb or .gltf; or a picture whose brightness is a height,
+  /// 1 × 1 × 1 m before it is scaled.
+  std::filesystem::path file;
+  std::string submesh;  ///< empty: all
   uav::Vec3 scale{1.0, 1.0, 1.0};
   bool is_centered = false;  ///< moved so that the middle of its extent is the origin
   FileLocation named_at{};   ///< where the world names the file; empty: in no file
   /// What else it is made of: libraries of materials, pictures and buffers that it names. Absolute.
   std::vector<std::filesystem::path> companions{};
   std::optional<std::size_t> piece{};  ///< only this one of its connected pieces; none: all
+  /// Text of an OBJ file that does not exist: `file` is a name that tells it from others.
+  std::shared_ptr<const std::string> made{};
 };
 using Geometry = std::variant<BoxGeometry, CylinderGeometry, SphereGeometry, CapsuleGeometry,
                               EllipsoidGeometry, PlaneGeometry, MeshGeometry>;

@@ -104,7 +104,15 @@ const ElementTable kElements = {
 
 /// Elements that only a world or only a UAV's model may have.
 const ElementTable kWorldElements = {
-    {"link", {"light"}}, {"world", {"wind"}}, {"wind", {"linear_velocity"}}};
+    {"link", {"light"}},
+    {"world", {"wind"}},
+    {"wind", {"linear_velocity"}},
+    {"geometry", {"cone", "polyline", "heightmap"}},
+    {"cone", {"radius", "length"}},
+    {"polyline", {"point", "height"}},
+    {"heightmap", {"uri", "size", "pos", "texture", "blend", "sampling"}},
+    {"texture", {"diffuse", "normal", "size"}},
+    {"blend", {"min_height", "fade_dist"}}};
 const ElementTable kUavElements = {{"link", {"sensor", "enable_wind"}},
                                    {"model", {"tether:multirotor", "joint", "enable_wind"}}};
 

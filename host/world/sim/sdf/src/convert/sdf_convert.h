@@ -49,6 +49,16 @@ std::string extension_of(const std::filesystem::path& file);
 void read_look(const SdfSource& source, const sdf::Visual& visual, const WarningSink& warn,
                Visual& out);
 
+/// A cone, polylines or a heightmap of a <geometry>; none: it is another shape, or is left out.
+std::optional<MeshGeometry> read_made_shape(const SdfSource& source,
+                                            const sdf::ElementPtr& geometry,
+                                            const WarningSink& warn);
+/// The <pos> of a heightmap in a <geometry>.
+uav::Pose offset_of_heightmap(const SdfSource& source, const sdf::ElementPtr& geometry);
+/// A <heightmap> has its textures in itself.
+void read_look_of_heightmap(const SdfSource& source, const sdf::ElementPtr& heightmap,
+                            const WarningSink& warn, const MeshGeometry& mesh, Material& look);
+
 /// One link, with its visuals and collisions.
 Link read_link(const SdfSource& source, const sdf::Link& link, const WarningSink& warn);
 

@@ -51,7 +51,7 @@ std::optional<Geometry> read_geometry(const SdfSource& source, const sdf::Geomet
   if (const auto* e = geometry.EllipsoidShape()) return EllipsoidGeometry{to_vec3(e->Radii())};
   if (const auto* plane = geometry.PlaneShape()) return read_plane(source, *plane);
   if (const auto* mesh = geometry.MeshShape()) return read_mesh(source, *mesh, warn);
-  return std::nullopt;
+  return read_made_shape(source, geometry.Element(), warn);
 }
 
 /// Calls `read`. Without --strict, what cannot be used is left out of a world.
@@ -138,10 +138,17 @@ Link read_link(const SdfSource& source, const sdf::Link& link, const WarningSink
       if (!geometry) return;
       Visual out;
       out.name = visual.Name();
-      out.X_LV = resolved_pose(source, visual);
+      out.X_LV =
+          resolved_pose(source, visual) * offset_of_heightmap(source, visual.Geom()->Element());
       out.geometry = *geometry;
       out.cast_shadows = visual.CastShadows();
       read_look(source, visual, warn, out);
+      const sdf::ElementPtr heightmap = visual.Geom()->Element()->FindElement("heightmap");
+      if (heightmap && out.has_look_of_mesh) {
+        out.has_look_of_mesh = false;
+        read_look_of_heightmap(source, heightmap, warn, std::get<MeshGeometry>(out.geometry),
+                               out.material);
+      }
       result.visuals.push_back(std::move(out));
     });
   }
@@ -150,8 +157,10 @@ Link read_link(const SdfSource& source, const sdf::Link& link, const WarningSink
     read_or_leave_out(source, collision.Element(), warn, [&] {
       const auto geometry = read_geometry(source, *collision.Geom(), warn);
       if (geometry)
-        result.collisions.push_back({collision.Name(), resolved_pose(source, collision), *geometry,
-                                     read_friction(collision),
+        result.collisions.push_back({collision.Name(),
+                                     resolved_pose(source, collision) *
+                                         offset_of_heightmap(source, collision.Geom()->Element()),
+                                     *geometry, read_friction(collision),
                                      read_intensity(collision.Element(), link, result.visuals)});
     });
   }

@@ -165,7 +165,8 @@ void read_look(const SdfSource& source, const sdf::Visual& visual, const Warning
                Visual& out) {
   const bool is_given =
       visual.Material() != nullptr && read_material(source, *visual.Material(), warn, out.material);
-  out.has_look_of_mesh = !is_given && std::holds_alternative<MeshGeometry>(out.geometry);
+  const auto* const mesh = std::get_if<MeshGeometry>(&out.geometry);
+  out.has_look_of_mesh = !is_given && mesh != nullptr && mesh->made == nullptr;
   if (out.has_look_of_mesh) out.material.diffuse_rgb = out.material.ambient_rgb = {1.0, 1.0, 1.0};
   out.material.alpha *= 1.0 - double{visual.Transparency()};
 }

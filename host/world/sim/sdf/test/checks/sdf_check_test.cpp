@@ -48,9 +48,8 @@ TEST(SdfWarning, NamesTheElement) {
        Consequence::kNoEffect, false},
       {visual_of("<geometry><heightmap><uri>h.png</uri></heightmap></geometry>"), 5,
        "<heightmap> of visual 'v'", Consequence::kMissing, true},
-      {visual_of("<geometry><polyline><point>0 0</point><point>1 0</point><point>0 1</point>"
-                 "<height>1</height></polyline></geometry>"),
-       5, "<polyline> of visual 'v'", Consequence::kMissing, true},
+      {visual_of("<geometry><image><uri>h.png</uri></image></geometry>"), 5,
+       "<image> of visual 'v'", Consequence::kMissing, true},
       {visual_of(kSphere + "<material>\n<script><uri>a</uri><name>No/Such</name></script>"
                            "</material>"),
        6, "<script> of visual 'v'", Consequence::kLooksDifferent, true},
