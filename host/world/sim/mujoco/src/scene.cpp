@@ -33,18 +33,21 @@ raster::Rgb rgb(const Vec3& v) {
 // Each pixel is the mean of four.
 raster::Texture halved(const raster::Texture& in) {
   raster::Texture out{std::max(1, in.width_px / 2), std::max(1, in.height_px / 2), {}};
-  const auto byte = [&](int x, int y, std::size_t channel) {
+  out.rgba.reserve(4 * static_cast<std::size_t>(out.width_px) *
+                   static_cast<std::size_t>(out.height_px));
+  const auto pixel = [&](int x, int y) {
     const auto column = static_cast<std::size_t>(std::min(x, in.width_px - 1));
     const auto row = static_cast<std::size_t>(std::min(y, in.height_px - 1));
-    return int{in.rgba[4 * (row * static_cast<std::size_t>(in.width_px) + column) + channel]};
+    return in.rgba.data() + 4 * (row * static_cast<std::size_t>(in.width_px) + column);
   };
   for (int y = 0; y < out.height_px; ++y)
-    for (int x = 0; x < out.width_px; ++x)
+    for (int x = 0; x < out.width_px; ++x) {
+      const std::uint8_t* const of[] = {pixel(2 * x, 2 * y), pixel(2 * x + 1, 2 * y),
+                                        pixel(2 * x, 2 * y + 1), pixel(2 * x + 1, 2 * y + 1)};
       for (std::size_t c = 0; c < 4; ++c)
-        out.rgba.push_back(static_cast<std::uint8_t>(
-            (byte(2 * x, 2 * y, c) + byte(2 * x + 1, 2 * y, c) + byte(2 * x, 2 * y + 1, c) +
-             byte(2 * x + 1, 2 * y + 1, c) + 2) /
-            4));
+        out.rgba.push_back(
+            static_cast<std::uint8_t>((of[0][c] + of[1][c] + of[2][c] + of[3][c] + 2) / 4));
+    }
   return out;
 }
 

@@ -1,5 +1,6 @@
 #include "scene/prepared_scene.h"
 
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -24,6 +25,25 @@ TEST(Texture, WeightsPixelsByHowMuchOfThemIsCovered) {
   const TexelPair* const pairs = scene.texels.data() + half.first_pair;
   EXPECT_EQ(pairs[0].channels[0][0], 18 - 128);
   EXPECT_EQ(pairs[1].channels[0][0], 42 - 128);
+}
+
+// The mean of 253, 254, 254 and 254 is 253.75; no channel spills into the next one.
+TEST(Texture, IsAveragedExactlyAtEvenSizes) {
+  PreparedScene scene;
+  add_texture({2, 2, {253, 0, 255, 0, 254, 0, 255, 1, 254, 0, 255, 0, 254, 1, 255, 0}}, scene);
+  const TexelPair& one = scene.texels.back();
+  const int expected[] = {254, 0, 255, 0};
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(one.channels[i][0] + 128, expected[i]) << i;
+}
+
+TEST(Texture, NeedsTheRoomThatIsSaid) {
+  for (const auto& [width, height] : {std::pair{1, 1}, {2, 2}, {5, 1}, {7, 16}}) {
+    PreparedScene scene;
+    const Texture texture{width, height,
+                          std::vector<std::uint8_t>(static_cast<std::size_t>(4 * width * height))};
+    add_texture(texture, scene);
+    EXPECT_EQ(scene.texels.size(), texels_of(texture)) << width << " × " << height;
+  }
 }
 
 TEST(Texture, RepeatsColumnsAndRowsAcrossItsEdges) {

@@ -127,4 +127,7 @@ PreparedMesh add_mesh(const Mesh& mesh, PreparedScene& scene);
 /// @returns how many levels.
 std::int32_t add_texture(const Texture& texture, PreparedScene& scene);
 
+/// How many texels `add_texture` adds, or a few more.
+std::size_t texels_of(const Texture& texture);
+
 }  // namespace tether::raster

@@ -173,6 +173,10 @@ class Preparation {
     std::vector<std::int32_t> levels;
     std::vector<bool> transparent;
     const Texture white{1, 1, {255, 255, 255, 255}};
+    // Else the vector would be copied as often as it grows: there may be 700 MB.
+    std::size_t texels = 2 * texels_of(white);
+    for (const Texture& texture : parts_.textures) texels += texels_of(texture);
+    scene_.texels.reserve(texels);
     add_texture(white, scene_);
     for (const Texture& texture : parts_.textures) {
       first_levels.push_back(static_cast<std::int32_t>(scene_.levels.size()));

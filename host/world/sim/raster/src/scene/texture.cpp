@@ -54,9 +54,29 @@ struct Image {
   Texels texels;
 };
 
+// The mean of four whole texels, as `mean` has it.
+std::uint32_t mean_of_four(const std::uint32_t* upper, const std::uint32_t* lower) {
+  constexpr std::uint32_t kEven = 0x00FF00FFU;
+  const auto sum = [&](unsigned shift) {
+    return (upper[0] >> shift & kEven) + (upper[1] >> shift & kEven) + (lower[0] >> shift & kEven) +
+           (lower[1] >> shift & kEven) + 0x00020002U;
+  };
+  return (sum(0) >> 2U & kEven) | (sum(8) >> 2U & kEven) << 8U;
+}
+
 // The next smaller version. Odd sizes are averaged exactly, as parts of pixels.
 Image make_smaller(const Image& from) {
   Image to{std::max(1, from.width / 2), std::max(1, from.height / 2), {}};
+  to.texels.reserve(static_cast<std::size_t>(to.width) * static_cast<std::size_t>(to.height));
+  if (from.width == 2 * to.width && from.height == 2 * to.height) {
+    const auto width = static_cast<std::size_t>(from.width);
+    for (std::size_t y = 0; y < static_cast<std::size_t>(to.height); ++y) {
+      const std::uint32_t* const upper = from.texels.data() + 2 * y * width;
+      for (std::size_t x = 0; x < width; x += 2)
+        to.texels.push_back(mean_of_four(upper + x, upper + width + x));
+    }
+    return to;
+  }
   for (int y = 0; y < to.height; ++y) {
     const Span rows(y, from.height, to.height);
     for (int x = 0; x < to.width; ++x) {
@@ -80,27 +100,37 @@ TexelPair pair_of(std::uint32_t upper, std::uint32_t lower) {
 
 void add_level(const Image& image, PreparedScene& scene) {
   const int stride = image.width + 2;
-  const auto texel = [&](int x, int y) {
-    const int column = (x + image.width) % image.width;
-    const int row = (y + image.height) % image.height;
-    return image.texels[static_cast<std::size_t>(row) * static_cast<std::size_t>(image.width) +
-                        static_cast<std::size_t>(column)];
+  const auto width = static_cast<std::size_t>(image.width);
+  const auto row = [&](int y) {
+    return image.texels.data() +
+           static_cast<std::size_t>((y + image.height) % image.height) * width;
   };
   scene.levels.push_back({static_cast<std::int32_t>(scene.texels.size()) + stride + 1, stride,
                           256.0F * static_cast<float>(image.width),
                           256.0F * static_cast<float>(image.height)});
   for (int y = -1; y < image.height; ++y) {
-    for (int x = -1; x <= image.width; ++x) {
-      scene.texels.push_back(pair_of(texel(x, y), texel(x, y + 1)));
-    }
+    const std::uint32_t *upper = row(y), *lower = row(y + 1);
+    scene.texels.push_back(pair_of(upper[width - 1], lower[width - 1]));
+    for (std::size_t x = 0; x < width; ++x) scene.texels.push_back(pair_of(upper[x], lower[x]));
+    scene.texels.push_back(pair_of(upper[0], lower[0]));
   }
 }
 
 }  // namespace
 
+std::size_t texels_of(const Texture& texture) {
+  std::size_t sum = 0;
+  for (int w = texture.width_px, h = texture.height_px;;
+       w = std::max(1, w / 2), h = std::max(1, h / 2)) {
+    sum += (static_cast<std::size_t>(w) + 2) * (static_cast<std::size_t>(h) + 1);
+    if (w <= 1 && h <= 1) return sum;
+  }
+}
+
 std::int32_t add_texture(const Texture& texture, PreparedScene& scene) {
   const std::size_t before = scene.levels.size();
   Image image{texture.width_px, texture.height_px, {}};
+  image.texels.reserve(texture.rgba.size() / 4);
   for (std::size_t i = 0; i < texture.rgba.size(); i += 4) {
     image.texels.push_back(packed(texture.rgba.data() + i));
   }
