@@ -3,7 +3,6 @@
 #include "options/refuse_option.h"
 
 #include <algorithm>
-#include <sstream>
 #include <string_view>
 #include <type_traits>
 #include <utility>
@@ -89,19 +88,6 @@ std::size_t script_of(const std::vector<std::string>& command) {
   return script == command.end() ? 0 : static_cast<std::size_t>(script - command.begin());
 }
 
-/// Whether a shell runs it, which starts other programs.
-bool is_shell_script(const std::vector<std::string>& command) {
-  constexpr std::string_view kShells[] = {"sh", "bash", "dash"};
-  std::istringstream first(os::begin_of(command.front(), 128));
-  std::string interpreter, argument;
-  first >> interpreter >> argument;
-  if (interpreter == "#!") interpreter += argument;
-  if (!interpreter.starts_with("#!")) interpreter = command.front();
-  std::string name = fs::path(interpreter).filename();
-  if (name == "env") name = argument;
-  return std::ranges::count(kShells, name) > 0;
-}
-
 std::string script_name(const std::vector<std::string>& command) {
   constexpr std::size_t kMost = 64;
   std::string name = fs::path(command[script_of(command)]).stem();
@@ -163,10 +149,8 @@ Values values_of(const ProgramOptions& options, const std::string& profile,
   if (free != std::end(kFreePlaces)) start = {free->x_m, free->y_m, start[2]};
   const std::string place =
       fmt::format("[{}]", fmt::join(options.position_m.value_or(start), ", "));
-  if (options.has_all_processes && options.uses_library)
-    refuse_option("--all-processes", "is for a program without Tether's library");
-  const bool has_all_processes =
-      options.has_all_processes || (!options.uses_library && is_shell_script(options.command));
+  if (options.has_one_process && options.uses_library)
+    refuse_option("--one-process", "is for a program without Tether's library");
   Values values = {
       {"name", {toml_text(script_name(options.command))}},
       {"world", file_value(shipped, ShippedKind::kWorld, "--world", world)},
@@ -178,7 +162,8 @@ Values values_of(const ProgramOptions& options, const std::string& profile,
       {"command", {toml_list(command)}},
       {"as_is", {options.uses_library ? "false" : "true"}},
       {"all_processes",
-       {has_all_processes ? "true" : "false", options.has_all_processes ? "--all-processes" : ""}},
+       {options.uses_library || options.has_one_process ? "false" : "true",
+        options.has_one_process ? "--one-process" : ""}},
       {"cpu_factor", number_value("--cpu-factor", options.cpu_factor.value_or(kCpuFactor))}};
   if (!options.anchors.empty())
     values["anchors"] = {toml_list(options.anchors), "--anchor " + options.anchors.front()};
@@ -241,11 +226,11 @@ Options program_rows(ProgramOptions& o) {
        "For a program: it uses Tether's library. Without --flight-controller, it commands the UAV "
        "itself",
        &o.uses_library},
-      {"--all-processes",
-       "For a program: so do all processes that it starts, such as the nodes of ROS; they share "
-       "one "
-       "core of this machine. Always for a shell script",
-       &o.has_all_processes}};
+      {"--one-process",
+       "For a program: only the process that the command starts flies, and one of its threads may "
+       "compute at a time. Without, all threads and processes, such as the nodes of ROS, share one "
+       "core of this machine",
+       &o.has_one_process}};
 }
 
 void require_no_program_options(ProgramOptions o) {

@@ -24,7 +24,7 @@ struct ProgramOptions {
   std::vector<std::string> anchors;
   bool starts_in_air = false;
   bool uses_library = false;
-  bool has_all_processes = false;
+  bool has_one_process = false;
 };
 
 /// The program, and the options that only it has.

@@ -99,23 +99,14 @@ TEST_F(ProgramScenarioTest, AProgramWithTethersLibraryCommandsTheUavItself) {
   EXPECT_EQ(thrown_error(ErrorCode::kUsage, [&] { made(); }).subject(), "--starts-in-air");
 }
 
-TEST_F(ProgramScenarioTest, TheProcessesOfAShellScriptFlyToo) {
-  EXPECT_FALSE(read().uavs.at(0).sut.has_all_processes);
-  options_.has_all_processes = true;
+TEST_F(ProgramScenarioTest, AllItsProcessesFlyUnlessOneIsWanted) {
   EXPECT_TRUE(read().uavs.at(0).sut.has_all_processes);
-  options_.has_all_processes = false;
-  for (const char* first : {"#!/bin/sh", "#!/usr/bin/env bash", "#! /bin/bash -e"}) {
-    options_.command = {scratch_.write("start", std::string(first) + "\nroscore &\n")};
-    EXPECT_TRUE(read().uavs.at(0).sut.has_all_processes) << first;
-  }
-  options_.command = {scratch_.write("start", "#!/usr/bin/python3\nimport sh\n")};
+  options_.has_one_process = true;
   EXPECT_FALSE(read().uavs.at(0).sut.has_all_processes);
-  options_.command = {"sh", "start"};
-  EXPECT_TRUE(read().uavs.at(0).sut.has_all_processes);
   options_.uses_library = true;
+  EXPECT_EQ(thrown_error(ErrorCode::kUsage, [&] { made(); }).subject(), "--one-process");
+  options_.has_one_process = false;
   EXPECT_FALSE(read().uavs.at(0).sut.has_all_processes);
-  options_.has_all_processes = true;
-  EXPECT_EQ(thrown_error(ErrorCode::kUsage, [&] { made(); }).subject(), "--all-processes");
 }
 
 TEST_F(ProgramScenarioTest, KeepsEachCharacterOfTheArguments) {

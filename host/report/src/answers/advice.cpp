@@ -108,8 +108,8 @@ std::string by_program(Advice::Kind kind, bool is_as_is) {
        "Wait by the client library (`sleep_for`, `sleep_until`, a read with a timeout), which "
        "Tether sees. If that is not possible, fly with `clock = \"wall\"` and `concurrent = true`, "
        "for which all time counts.",
-       "Fly with all its threads and processes on one core (`--all-processes`, or `all_processes = "
-       "true` in [sut]), so that what they wait for from each other is seen; with OpenCV, open the "
+       "Fly with all its threads and processes on one core (`all_processes = true` in [sut]), so "
+       "that what they wait for from each other is seen; with OpenCV, open the "
        "camera with `cv2.CAP_V4L2`. Keep waits for a device or a server out of the flight."},
       {Kind::kUnstretch,
        "Wait by the client library (`sleep_for`, `sleep_until`, a read with a timeout), or fly on "
@@ -118,8 +118,8 @@ std::string by_program(Advice::Kind kind, bool is_as_is) {
       {Kind::kRunConcurrent,
        "Let one thread compute at a time (in OpenCV, `cv::setNumThreads(1)`), or fly with `clock = "
        "\"wall\"` and `concurrent = true`, for which threads that compute in parallel count once.",
-       "Fly with all its threads and processes on one core (`--all-processes`, or `all_processes = "
-       "true` in [sut]), or let one thread compute at a time (in OpenCV, `cv::setNumThreads(1)`)."},
+       "Fly with all its threads and processes on one core (`all_processes = true` in [sut]), or "
+       "let one thread compute at a time (in OpenCV, `cv::setNumThreads(1)`)."},
       {Kind::kQuietMachine,
        "Fly again while nothing else runs on the machine, or with counted work (`clock = "
        "\"counted\"`), which does not depend on that.",

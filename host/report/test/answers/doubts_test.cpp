@@ -80,7 +80,8 @@ TEST(Verdict, AdvisesAProgramAsItIsNothingThatOnlyProgramsWithTheLibraryCanDo) {
   EXPECT_THAT(advice(), needs_library);
   trial.suts.resize(1);
   trial.suts[0].as_is = true;
-  EXPECT_THAT(advice(), testing::AllOf(HasSubstr("--all-processes"), testing::Not(needs_library)));
+  EXPECT_THAT(advice(),
+              testing::AllOf(HasSubstr("all_processes = true"), testing::Not(needs_library)));
 }
 
 TEST(Verdict, OfReplayedTimesHasTheDoubtsOfTheirMeasurement) {
