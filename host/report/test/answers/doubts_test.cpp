@@ -1,5 +1,7 @@
 #include "answers/flights.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,6 +10,7 @@ namespace tether::report {
 namespace {
 
 using testing::HasSubstr;
+using testing::StartsWith;
 
 TEST(Verdict, OfACrashOnABusyMachineIsNotUndecided) {
   campaign::ScenarioResults scenario = flights(0, 1);
@@ -117,6 +120,42 @@ TEST(Verdict, OfACountAtItsLimitIsUndecidedOnABusyMachine) {
 
 TEST(RulingsTable, SaysThatOneFlightIsAllThatIsKnown) {
   EXPECT_EQ(rulings_table({verdict_of(flights(1, 0))}).rows[0][1], "fast enough in this flight");
+}
+
+// As a program that crashed at its start, and flew when it was started again.
+TEST(Verdict, IsDoubtfulForWhatFlightsThatReachedTheGoalHaveOnly) {
+  const Warning doubt{Consequence::kDoubtful, {}, "a program", "failed in a first attempt"};
+  campaign::ScenarioResults scenario = flights(40, 1);
+  auto& trials = scenario.conditions[0].trials;
+  const auto missed =
+      std::ranges::find(trials, campaign::Outcome::kGoalMissed, &campaign::TrialResult::outcome);
+  ASSERT_NE(missed, trials.end());
+  missed->warnings = {doubt};
+  EXPECT_EQ(name(verdict_of(scenario).first()), name(verdict_of(flights(40, 1)).first()))
+      << "it can be why that one missed the goal";
+  for (campaign::TrialResult& trial : trials) trial.warnings = {doubt};
+  scenario.swept_from = "turn";
+  scenario.settings = {{"world", "\"yard\""}};
+  trials.erase(missed);
+  const Verdict verdict = verdict_of(scenario);
+  EXPECT_THAT(name(verdict.first()), StartsWith("doubtful whether fast enough"));
+  EXPECT_THAT(answers_of({verdict})[0].lead, StartsWith("Doubtful whether fast enough"));
+}
+
+// One that just reached it among nine that clearly missed it changes nothing.
+TEST(Verdict, IsUndecidedOnABusyMachineOnlyIfItsSpreadCouldChangeTheRuling) {
+  campaign::ScenarioResults scenario = flights(1, 9);
+  for (campaign::TrialResult& trial : scenario.conditions[0].trials) {
+    trial.this_run.doubts = {{campaign::Doubt::Kind::kBusyMachine, "", 0.2}};
+    trial.metrics.resize(1);
+    const bool is_reached = trial.outcome == campaign::Outcome::kGoalReached;
+    trial.metrics[0].value = is_reached ? 2.9 : 6.0;
+    trial.metrics[0].max = 3.0;
+  }
+  EXPECT_EQ(verdict_of(scenario).first().ruling, Ruling::kGoalMissed);
+  for (campaign::TrialResult& trial : scenario.conditions[0].trials)
+    trial.metrics[0].value = trial.outcome == campaign::Outcome::kGoalReached ? 2.9 : 3.1;
+  EXPECT_EQ(verdict_of(scenario).first().ruling, Ruling::kUndecided);
 }
 
 }  // namespace

@@ -466,43 +466,6 @@ TEST(Verdict, OfASweepNamesWhatLimitsItsPoints) {
   EXPECT_THAT(answers[1].rest, HasSubstr("<wind>"));
 }
 
-// As a program that crashed at its start, and flew when it was started again.
-TEST(Verdict, IsDoubtfulForWhatFlightsThatReachedTheGoalHaveOnly) {
-  const Warning doubt{Consequence::kDoubtful, {}, "a program", "failed in a first attempt"};
-  campaign::ScenarioResults scenario = flights(40, 1);
-  auto& trials = scenario.conditions[0].trials;
-  const auto missed =
-      std::ranges::find(trials, campaign::Outcome::kGoalMissed, &campaign::TrialResult::outcome);
-  ASSERT_NE(missed, trials.end());
-  missed->warnings = {doubt};
-  EXPECT_EQ(name(verdict_of(scenario).first()), name(verdict_of(flights(40, 1)).first()))
-      << "it can be why that one missed the goal";
-  for (campaign::TrialResult& trial : trials) trial.warnings = {doubt};
-  scenario.swept_from = "turn";
-  scenario.settings = {{"world", "\"yard\""}};
-  trials.erase(missed);
-  const Verdict verdict = verdict_of(scenario);
-  EXPECT_THAT(name(verdict.first()), StartsWith("doubtful whether fast enough"));
-  EXPECT_THAT(answers_of({verdict})[0].lead, StartsWith("Doubtful whether fast enough"));
-}
-
-// One that just reached it among nine that clearly missed it changes nothing.
-TEST(Verdict, IsUndecidedOnABusyMachineOnlyIfItsSpreadCouldChangeTheRuling) {
-  campaign::ScenarioResults scenario = flights(10, 9);
-  for (campaign::TrialResult& trial : scenario.conditions[0].trials) {
-    trial.this_run.doubts = {{campaign::Doubt::Kind::kBusyMachine, "", 0.2}};
-    trial.metrics.resize(1);
-    const bool is_reached = trial.outcome == campaign::Outcome::kGoalReached;
-    trial.metrics[0].value = is_reached ? 2.9 : 6.0;
-    trial.metrics[0].max = 3.0;
-  }
-  EXPECT_EQ(verdict_of(scenario).first().ruling, Ruling::kGoalMissed);
-  scenario.conditions[0].trials.back().outcome = campaign::Outcome::kGoalReached;
-  for (campaign::TrialResult& trial : scenario.conditions[0].trials)
-    trial.metrics[0].value = trial.outcome == campaign::Outcome::kGoalReached ? 2.9 : 3.1;
-  EXPECT_EQ(verdict_of(scenario).first().ruling, Ruling::kUndecided);
-}
-
 TEST(Verdict, NamesWhatOfTheWorldIsMissing) {
   campaign::ScenarioResults scenario = flights(1, 0);
   Warning warning{Consequence::kMissing, {}, "<wind>", "is not simulated; remove it"};
