@@ -125,6 +125,7 @@ if(NOT TETHER_TARGET_ONLY)
         "examples/depth-camera:/usr/share/doc/libtether-client-dev/examples/depth-camera"
         "examples/node-companion:../examples/node-companion"
         "examples/own-simulator:../examples/own-simulator"
+        "examples/ros1-face-box:../examples/ros1-face-box"
         "examples/python-face-anchor:/usr/share/doc/python3-tether/examples/python-face-anchor"
         "host/external/sim/protocol/schema/:/usr/share/tether/schema/"
         "target/client/c_api/include/:/usr/include/")
@@ -141,7 +142,7 @@ if(NOT TETHER_TARGET_ONLY)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/CHANGELOG.md")
   install(FILES docs/design.md docs/results.md docs/scale.md "${documents}/CHANGELOG.md"
     DESTINATION "${destination}" COMPONENT tether)
-  install(DIRECTORY examples/node-companion DESTINATION "${destination}/examples" COMPONENT tether
+  install(DIRECTORY examples/node-companion examples/ros1-face-box DESTINATION "${destination}/examples" COMPONENT tether
     USE_SOURCE_PERMISSIONS PATTERN node_modules EXCLUDE)
   install(DIRECTORY examples/own-simulator DESTINATION "${destination}/examples" COMPONENT tether
     PATTERN build EXCLUDE)

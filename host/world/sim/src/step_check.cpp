@@ -146,7 +146,16 @@ HoverLoop hover_loop(const uav::MultirotorParameters& airframe, double gravity_m
 }
 
 void check_step(const World& world, Controller controller, const WarningSink& warn) {
+  constexpr double kEarth_m_s2 = 9.81, kRacing = 20.0;  // the strongest racers lift 15 times theirs
   for (const Uav& uav : world.uavs) {
+    const std::string subject = fmt::format("UAV '{}'", uav.name);
+    if (const double lift = lift_by_weight(uav.airframe, kEarth_m_s2); warn && lift > kRacing)
+      warn({Consequence::kDoubtful,
+            {},
+            subject,
+            fmt::format("lifts {:.3g} times its weight with all rotors at full speed: check the "
+                        "units of its mass and thrust coefficient",
+                        lift)});
     const auto loop_at = [&](Duration step) {
       return hover_loop(uav.airframe, world.gravity_m_s2, step);
     };
@@ -170,7 +179,6 @@ void check_step(const World& world, Controller controller, const WarningSink& wa
                             "<time_constant_down_s>) or too weak (at full speed, they lift {:.2g} "
                             "times its weight)",
                             lift_by_weight(uav.airframe, world.gravity_m_s2));
-    const std::string subject = fmt::format("UAV '{}'", uav.name);
     if (!is_stable && controller == Controller::kOurs)
       throw Error(ErrorCode::kBadFile,
                   world.step_at.file.empty() ? FileLocation{world.file.string(), 0} : world.step_at,

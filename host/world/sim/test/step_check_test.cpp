@@ -88,6 +88,14 @@ class CheckStep : public ::testing::Test {
   std::vector<Warning> warnings_;
 };
 
+TEST_F(CheckStep, DoubtsThrustThatNoRotorsHave) {
+  world_.uavs[0].airframe.thrust_coefficient *= 1000.0;
+  check();
+  ASSERT_FALSE(warnings_.empty());
+  EXPECT_EQ(warnings_[0].consequence, Consequence::kDoubtful);
+  EXPECT_THAT(warnings_[0].message, HasSubstr("times its weight"));
+}
+
 TEST_F(CheckStep, SaysNothingOfAGoodStep) {
   check();
   world_.step = milliseconds(50);

@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include <tether/base/suggest.h>
 
 namespace tether::sim {
@@ -146,9 +148,13 @@ std::set<std::string> read_airframe(const SdfSource& source, const sdf::Model& m
   }
   read_body(source, model.Element(), uav.body, airframe);
 
-  if (flight_limits(airframe).max_thrust_N <= airframe.mass_kg * gravity_m_s2) {
-    refuse(source, declared_by, "has less thrust than weight with all rotors at full speed");
-  }
+  const double thrust_N = flight_limits(airframe).max_thrust_N;
+  const double weight_N = airframe.mass_kg * gravity_m_s2;
+  if (thrust_N <= weight_N)
+    refuse(source, declared_by,
+           fmt::format("has less thrust than weight: {:.3g} N with all rotors at full speed, and "
+                       "{:.3g} N (mass {:.3g} kg)",
+                       thrust_N, weight_N, airframe.mass_kg));
   return motors.joints;
 }
 
