@@ -413,7 +413,9 @@ std::string arms_over(const std::string& opening, const std::string& flushing) {
          flushing +
          "controller.send(m.COMMAND, 1, 0, 0, 0, 0, 0, 0, m.ARM, 1, 1, 0)\n"
          "listen(m.ACK)\n"
-         "print('acknowledged', controller.last[m.ACK])\n";
+         "print('acknowledged', controller.last.pop(m.ACK))\n"
+         "controller.send(m.COMMAND, 0, 0, 0, 0, 0, 0, 0, 300, 1, 1, 0)\n"  // of no mission
+         "listen(m.ACK)\n";
 }
 
 TEST_F(AsIs, ASerialPortLeadsToTheFlightController) {
@@ -440,6 +442,13 @@ TEST_F(AsIs, ATcpConnectionLeadsToTheFlightController) {
   EXPECT_EQ(output.code, 0) << output.err << said();
   EXPECT_NE(said().find("acknowledged {'command': 400, 'result': 0}"), std::string::npos) << said();
   EXPECT_EQ(audit_code(folder_ / "out"), 0);
+  std::string doubts;
+  const nlohmann::json flight = result();
+  for (const auto& warning : flight.at("warnings"))
+    doubts += warning.at("message").get<std::string>();
+  EXPECT_NE(doubts.find("its last request for the start of a mission was denied"),
+            std::string::npos)
+      << doubts;
 }
 
 // The same program by MAVLink: a fast computer reaches the corners, a slow one does not.

@@ -64,9 +64,9 @@ Annotation as_read(const Annotation& message) {
   return from_json<Annotation>(text);
 }
 
-/// Nobody reads the fields of these in memory.
+/// Of the many others, nobody reads the fields in memory.
 AutopilotMessage as_read(AutopilotMessage message) {
-  message.fields = "{}";
+  if (!message.tells_state()) message.fields = "{}";
   return message;
 }
 

@@ -58,5 +58,18 @@ TEST(RecordInMemory, IsTheRecordThatIsReadFromTheFile) {
   EXPECT_TRUE(kept.unloaded.empty() && kept.images.empty());
 }
 
+TEST(RecordInMemory, HasWhatAControllerSaysOfItsState) {
+  RecordInMemory memory;
+  for (const char* name : {"COMMAND_ACK", "ATTITUDE"}) {
+    AutopilotMessage message;
+    message.name = name;
+    message.fields = R"({"result": 2})";
+    memory.write(st_ms(1), message);
+  }
+  const Record kept = memory.take();
+  EXPECT_EQ(kept.autopilot.at(0).message.fields, R"({"result": 2})");
+  EXPECT_EQ(kept.autopilot.at(1).message.fields, "{}");
+}
+
 }  // namespace
 }  // namespace tether::record

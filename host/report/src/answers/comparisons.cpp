@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include <tether/report/verdict.h>
+
 // Numbers are rounded by the width of their confidence interval.
 namespace tether::report {
 namespace {

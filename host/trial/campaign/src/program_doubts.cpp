@@ -42,9 +42,7 @@ Said said_of(const record::Record& record, const std::string& uav) {
   Said said;
   for (const auto& logged : record.autopilot) {
     const record::AutopilotMessage& m = logged.message;
-    const bool is_read =
-        m.name == "COMMAND_ACK" || m.name == "MISSION_ACK" || m.name == "HEARTBEAT";
-    if (m.uav != uav || !m.of_controller() || !is_read) continue;
+    if (m.uav != uav || !m.tells_state()) continue;
     const auto fields = nlohmann::json::parse(m.fields, nullptr, false);
     if (!fields.is_object()) continue;
     if (m.name == "COMMAND_ACK")
@@ -242,7 +240,7 @@ std::string where_to_find(const record::Record& record) {
       });
   std::vector<std::string> places;
   if (lost->controller)
-    places.push_back("MAVLink at UDP port 14540 or 14550, TCP port 5760 or /dev/ttyACM0");
+    places.emplace_back("MAVLink at UDP port 14540 or 14550, TCP port 5760 or /dev/ttyACM0");
   if (cameras > 0)
     places.push_back(cameras == 1 ? "its camera at /dev/video0"
                                   : fmt::format("its cameras at /dev/video0 to {}", cameras - 1));

@@ -280,6 +280,11 @@ struct AutopilotMessage {
     return outcome == "not_signed" || outcome == "wrong_signature" || outcome == "old_signature";
   }
   bool of_controller() const { return !to_controller && !of_station; }
+  /// Whether the controller says what it refuses, or in which state it is.
+  bool tells_state() const {
+    return of_controller() && (name == "STATUSTEXT" || name == "COMMAND_ACK" ||
+                               name == "MISSION_ACK" || name == "HEARTBEAT");
+  }
   /// Whether it is a command of what to fly now.
   bool is_setpoint() const {
     return to_controller &&
