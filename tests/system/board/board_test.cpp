@@ -24,9 +24,6 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
-/// Of the wall clock, which goes on while other tests have the machine's cores.
-const Substitution kEnoughTime{"time_limit_s = 5", "time_limit_s = 60"};
-
 class OnABoard : public RunTest {
  protected:
   OnABoard() { board_.install("bad_sut", bad_sut_program()); }
@@ -47,7 +44,7 @@ class OnABoard : public RunTest {
   /// The SUT in its mode; the program is one of the board's PATH, or another one.
   Command fly(const std::string& mode = "good", const std::string& program = "bad_sut",
               const std::vector<Substitution>& more = {}) const {
-    std::vector<Substitution> changes{{bad_sut_program(), program}, kEnoughTime};
+    std::vector<Substitution> changes{{bad_sut_program(), program}};
     changes.insert(changes.end(), more.begin(), more.end());
     return on_board(flight(mode, {"--target", board_.address()}, changes));
   }
@@ -150,7 +147,8 @@ TEST_F(OnABoard, AMixedFleetFliesWithTheClockAndTheReadingsOfEach) {
        {"[[uav]]\nname = \"uav1\"\n", targets + "[[uav]]\nname = \"uav1\"\ntarget = \"pi\"\n"},
        {"[sut]\n", uavs + "[sut]\n"},
        {"clock = \"cpu\"\n\n", "\n"},
-       kEnoughTime,
+       // The wall clock goes on while other tests have the machine's cores.
+       {"time_limit_s = 5", "time_limit_s = 60"},
        {"kind = \"time_required\"", "kind = \"time_required\"\nuav = \"uav1\""}})));
   const auto suts = result()["suts"];
   ASSERT_EQ(suts.size(), 4u);

@@ -38,7 +38,7 @@ struct Said {
   bool is_armed = true;  ///< as far as it says
 };
 Said said_of(const record::Record& record, const std::string& uav) {
-  constexpr int kCritical = 5, kArmed = 128;  // MAV_STATE, MAV_MODE_FLAG
+  constexpr int kCritical = 5, kArmed = 128, kNoAutopilot = 8;  // MAV_STATE, _MODE_FLAG, _AUTOPILOT
   Said said;
   for (const auto& logged : record.autopilot) {
     const record::AutopilotMessage& m = logged.message;
@@ -48,7 +48,7 @@ Said said_of(const record::Record& record, const std::string& uav) {
     if (m.name == "COMMAND_ACK")
       said.answers[fields.value("command", 0)] = fields.value("result", 0);
     if (m.name == "MISSION_ACK") said.mission = fields.value("type", 0);
-    if (m.name != "HEARTBEAT") continue;
+    if (m.name != "HEARTBEAT" || fields.value("autopilot", 0) == kNoAutopilot) continue;
     said.is_armed = (fields.value("base_mode", 0) & kArmed) != 0;
     if (fields.value("system_status", 0) >= kCritical && !said.failsafe_at)
       said.failsafe_at = m.sent_at;

@@ -205,6 +205,7 @@ TEST_F(MakeResult, WhatTheFlightControllerDeniedOrDidByItselfIsDoubtful) {
   };
   say("SET_MODE", "{}", true);
   say("HEARTBEAT", R"({"base_mode": 217, "system_status": 4})");
+  say("HEARTBEAT", R"({"autopilot": 8, "base_mode": 0, "system_status": 6})");  // of a gimbal
   say("COMMAND_ACK", R"({"command": 512, "result": 2})");
   EXPECT_EQ(doubts(), "") << "a message that was asked for is none of the flight";
   const record::Record fine = record;
