@@ -430,8 +430,7 @@ void Agent::finish(int exit_code) {
   if (is_stopped_ && !is_first()) return;
   const std::lock_guard leading(leading_);
   static_cast<void>(vehicle_->finish(
-      exit_code == 0, "the program ended with exit code " + std::to_string(exit_code),
-      client::details_of(Threads::computed())));
+      exit_code == 0, "the program ended with exit code " + std::to_string(exit_code), "{}"));
 }
 
 }  // namespace tether::as_is
