@@ -59,19 +59,6 @@ Result<void*> map(const std::string& file, int flags) {
   return memory;
 }
 
-// What the calling thread saw when it last asked for the CPU time of all processes. For as long as
-// it has the core that they share, the others' do not grow.
-struct Seen {
-  const GroupPage* page = nullptr;
-  std::uint32_t moves = 0;
-  Duration at{0};      // by the machine's clock
-  Duration thread{0};  // its own CPU time
-  Duration used{0};    // of all, with what was left out
-};
-thread_local Seen t_seen __attribute__((tls_model("initial-exec")));
-// Less than the shortest time for which it can have lost the core.
-constexpr Duration kShortestAbsence = std::chrono::microseconds(3);
-
 // Of the calling thread, by leave_out.
 thread_local Duration t_left_out_of_group __attribute__((tls_model("initial-exec"))){0};
 
@@ -110,7 +97,6 @@ GroupPage::Process* GroupPage::enter(pid_t process) {
     processes_[i].listens = false;
     processes_[i].id = process;
     reach(processes_end_, i);
-    moves_ += 2;  // what threads have seen is not all
     begin_thread(process, process);
     return &processes_[i];
   }
@@ -163,25 +149,6 @@ void GroupPage::forget_ended() {
 }
 
 Duration GroupPage::used() const {
-  const Duration sum = used_by_each();
-  return Duration(raise_to(latest_used_ns_, sum.count() - left_out_ns_));
-}
-
-Duration GroupPage::used_on_one_core() const {
-  const Duration at = os::read_clock(CLOCK_MONOTONIC);
-  const Duration thread = os::read_clock(CLOCK_THREAD_CPUTIME_ID);
-  const Duration own = thread - t_seen.thread, absent = at - t_seen.at - own;
-  const bool had_core =
-      t_seen.page == this && t_seen.moves == moves_ && std::chrono::abs(absent) < kShortestAbsence;
-  if (!had_core) {
-    const std::uint32_t moves = moves_;
-    t_seen = {this, moves, at, thread, used_by_each()};
-  }
-  const Duration used = had_core ? t_seen.used + own : t_seen.used;
-  return Duration(raise_to(latest_used_ns_, used.count() - left_out_ns_));
-}
-
-Duration GroupPage::used_by_each() const {
   for (;;) {
     const std::uint32_t moves = moves_;
     std::int64_t sum_ns = ended_ns_;
@@ -192,7 +159,8 @@ Duration GroupPage::used_by_each() const {
       const auto used = used_by_process(id);
       sum_ns += used ? raise_to(one.used_ns, std::int64_t{used->count()}) : one.used_ns.load();
     }
-    if (moves % 2 == 0 && moves_ == moves) return Duration(sum_ns);
+    if (moves % 2 == 0 && moves_ == moves)
+      return Duration(raise_to(latest_used_ns_, sum_ns - left_out_ns_));
   }
 }
 
@@ -209,7 +177,7 @@ ExecTime GroupPage::now() const {
     const std::uint32_t courses = courses_;
     const ExecTime at =
         base_et_.load() +
-        times_factor(std::max(used_on_one_core() - Duration(base_used_ns_), Duration(0)), factor_);
+        times_factor(std::max(used() - Duration(base_used_ns_), Duration(0)), factor_);
     if (courses % 2 == 0 && courses_ == courses) return raise_to(latest_, at);
   }
 }

@@ -1,10 +1,8 @@
-#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <thread>
 
 #include <gtest/gtest.h>
-#include <sched.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
@@ -57,38 +55,6 @@ TEST_F(GroupPageTest, ExecutionTimeIsTheCpuTimeOfAllProcessesTimesTheFactor) {
   const ExecTime before = page_->now();
   page_->leave_out(1h);
   EXPECT_EQ(page_->now(), before) << "and does not go back";
-}
-
-// Both on one core, as those of a program: each loses it to the other.
-TEST_F(GroupPageTest, WhatOthersComputeIsSeenAtTheNextLook) {
-  cpu_set_t before, one;
-  ASSERT_EQ(::sched_getaffinity(0, sizeof before, &before), 0);
-  CPU_ZERO(&one);
-  CPU_SET(static_cast<std::size_t>(::sched_getcpu()), &one);
-  ASSERT_EQ(::sched_setaffinity(0, sizeof one, &one), 0);
-  page_->enter(::getpid());
-  page_->publish(ExecTime{}, page_->used(), 1.0);
-  const ExecTime begin = page_->now();
-  const pid_t child = ::fork();
-  if (child == 0) {
-    page_->enter(::getpid());
-    compute_here(20ms);
-    ::_exit(page_->now() - begin >= 20ms ? 0 : 1);
-  }
-  ExecTime last = begin;
-  int status = 0;
-  Duration largest{0};
-  while (::waitpid(child, &status, WNOHANG) == 0) {
-    const ExecTime now = page_->now();
-    EXPECT_GE(now, last);
-    largest = std::max(largest, now - last);
-    last = now;
-  }
-  EXPECT_EQ(status, 0);
-  EXPECT_GE(page_->now() - begin, 20ms);
-  EXPECT_GE(largest, 500us) << "the child had the core between two looks";
-  EXPECT_LE(page_->now() - ExecTime{}, page_->used() + 1ms);
-  ::sched_setaffinity(0, sizeof before, &before);
 }
 
 TEST_F(GroupPageTest, WhatAnEndedProcessHasComputedStays) {

@@ -72,8 +72,6 @@ class GroupPage {
 
   /// From ET `at`, with `used`, on. For tether-exec.
   void publish(ExecTime at, Duration used, double factor);
-  /// Of a process on the core that they share: while it goes on to compute, it need not ask for the
-  /// CPU times of the others.
   ExecTime now() const;
 
   /// nullptr: there are too many waits.
@@ -91,10 +89,6 @@ class GroupPage {
   std::span<Thread> threads() { return {threads_.data(), threads_end_.load()}; }
 
  private:
-  Duration used_by_each() const;
-  /// used(), but the others are only asked if the calling thread may have lost the core.
-  Duration used_on_one_core() const;
-
   // Odd while something changes that is read together.
   std::atomic<std::uint32_t> moves_{0}, courses_{0};
   std::atomic<std::int64_t> ended_ns_{0}, left_out_ns_{0};
