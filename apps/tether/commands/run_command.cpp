@@ -140,7 +140,9 @@ void require_room(const runner::TrialRequest& request) {
 int run_program(const RunOptions& options, const std::stop_token& stop) {
   ProgramOptions program = options.program;
   // A board's clock is the wall clock, which several processes cannot have.
-  if (options.target.starts_with("ssh://") && !program.uses_library) program.has_one_process = true;
+  const auto target = runner::parse_target_choice(options.target);
+  if (std::holds_alternative<scenario::SshAddress>(target) && !program.uses_library)
+    program.has_one_process = true;
   const ProgramScenario made = make_program_scenario(
       program, options.profile.string(), scenario::ShippedFiles::of_program(os::own_file()));
   require_room(options.request);

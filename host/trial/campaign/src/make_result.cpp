@@ -177,10 +177,8 @@ void judge_missions(TrialResult& result, const scenario::Scenario& scenario,
                                      ? "began no task of its mission"
                                      : missed_task(*uav.sut.mission, verdicts.tasks);
       if (!missed.empty())
-        result.warnings.push_back({Consequence::kDoubtful,
-                                   {},
-                                   "UAV '" + uav.placement.name + "'",
-                                   "has a program that says it reached its goal, but " + missed});
+        result.warnings.push_back(doubt_about(
+            uav.placement.name, "has a program that says it reached its goal, but " + missed));
     }
     result.tasks.insert(result.tasks.end(), verdicts.tasks.begin(), verdicts.tasks.end());
     result.clauses.insert(result.clauses.end(), verdicts.clauses.begin(), verdicts.clauses.end());

@@ -125,15 +125,15 @@ Motion motion_of(const record::Record& record, const std::string& uav) {
 }
 
 /// As check_program, of a program with a flight controller.
-void check_companion(const record::Record& record, bool nothing, SutResult& sut,
-                     std::vector<Warning>& warnings) {
+void check_companion(const record::Record& record, const Motion& motion, bool nothing,
+                     SutResult& sut, std::vector<Warning>& warnings) {
   const auto is_sent = [&](const auto& logged) {
     const record::AutopilotMessage& m = logged.message;
     return m.uav == sut.uav && m.to_controller && m.outcome == record::kDelivered &&
            !m.name.empty();
   };
   const auto doubt = [&](const std::string& what) {
-    warnings.push_back({Consequence::kDoubtful, {}, "UAV '" + sut.uav + "'", what});
+    warnings.push_back(doubt_about(sut.uav, what));
   };
   if (const auto refused = std::ranges::count_if(record.autopilot, [&](const auto& logged) {
         return logged.message.uav == sut.uav && logged.message.part == 0 &&
@@ -159,7 +159,7 @@ void check_companion(const record::Record& record, bool nothing, SutResult& sut,
   if (sut.reached_goal && said.failsafe_at)
     doubt(fmt::format("has a flight controller that was in a failsafe at ST {:.3f} s{}",
                       to_seconds(*said.failsafe_at), why));
-  const auto [first, last, has_moved, has_turned] = motion_of(record, sut.uav);
+  const auto& [first, last, has_moved, has_turned] = motion;
   if (!has_sent) return doubt("has a flight controller to which its program sent no message");
   const bool began_in_air = first != nullptr && first->clearance_m && *first->clearance_m > kAway_m;
   if (!has_moved && !(began_in_air && has_turned))
@@ -176,39 +176,37 @@ void check_companion(const record::Record& record, bool nothing, SutResult& sut,
 
 }  // namespace
 
+Warning doubt_about(const std::string& uav, const std::string& what) {
+  return {Consequence::kDoubtful, {}, "UAV '" + uav + "'", what};
+}
+
 std::string check_program(const record::Record& record, const record::SutInfo& info, SutResult& sut,
                           std::vector<Warning>& warnings) {
   const Motion motion = motion_of(record, info.uav);
   if (constexpr double kFalls_m_s = 2.0;
       sut.reached_goal && motion.last != nullptr && motion.last->clearance_m &&
       *motion.last->clearance_m > kAway_m && motion.last->v_WB_m_s[2] < -kFalls_m_s)
-    warnings.push_back({Consequence::kDoubtful,
-                        {},
-                        "UAV '" + info.uav + "'",
-                        fmt::format("sinks at {:.3g} m/s, {:.3g} m from anything, when its program "
-                                    "ends",
-                                    -motion.last->v_WB_m_s[2], *motion.last->clearance_m)});
+    warnings.push_back(doubt_about(
+        info.uav, fmt::format("sinks at {:.3g} m/s, {:.3g} m from anything, when its program ends",
+                              -motion.last->v_WB_m_s[2], *motion.last->clearance_m)));
   constexpr std::ptrdiff_t kHardlyAny = 5;
   const std::ptrdiff_t calls = calls_of(record, info);
   const bool nothing = calls == 0;
   if (info.controller)
-    check_companion(record, nothing, sut, warnings);
+    check_companion(record, motion, nothing, sut, warnings);
   else if (!nothing && calls < kHardlyAny && sut.finished && sut.reached_goal)
     if (motion.first != nullptr && !motion.has_moved && !motion.has_turned)
-      warnings.push_back(
-          {Consequence::kDoubtful,
-           {},
-           "UAV '" + info.uav + "'",
-           fmt::format("never left its start, and has a program that did hardly anything with it: "
-                       "{} call{}",
-                       calls, calls > 1 ? "s" : "")});
+      warnings.push_back(doubt_about(
+          info.uav,
+          fmt::format("never left its start, and has a program that did hardly anything with it: "
+                      "{} call{}",
+                      calls, calls > 1 ? "s" : "")));
   if (!nothing) return "";
   const bool is_alone = record.header.suts.size() == 1;
   // One with Tether's library says itself that it has flown; and a program beside others can be
   // there as a load.
   if (!info.controller && (!info.as_is || !is_alone)) {
-    if (sut.finished && sut.reached_goal)
-      warnings.push_back({Consequence::kDoubtful, {}, "UAV '" + info.uav + "'", kDidNothing});
+    if (sut.finished && sut.reached_goal) warnings.push_back(doubt_about(info.uav, kDidNothing));
     return "";
   }
   if (!sut.finished) return "";

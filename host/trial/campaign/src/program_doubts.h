@@ -7,6 +7,8 @@
 
 namespace tether::campaign {
 
+Warning doubt_about(const std::string& uav, const std::string& what);
+
 /// Whether a program did anything with its UAV and, if it says that it has flown, whether it can
 /// have done so. Doubts go to `warnings`; what its flight controller refused, to the outcome.
 /// @return why the program was never set up; empty: it was.
