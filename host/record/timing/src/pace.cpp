@@ -116,7 +116,7 @@ std::map<std::string, Intervals> intervals_of(const record::Record& record, cons
   return cameras;
 }
 
-double setpoint_rate(const record::Record& record, const std::string& uav) {
+void add_setpoints(const record::Record& record, const std::string& uav, Pace& pace) {
   std::vector<double> between_s;
   std::optional<SimTime> previous;
   for (const auto& logged : record.autopilot) {
@@ -125,8 +125,22 @@ double setpoint_rate(const record::Record& record, const std::string& uav) {
     if (previous) between_s.push_back(to_seconds(m.sent_at - *previous));
     previous = m.sent_at;
   }
-  const double median_s = between_s.empty() ? 0.0 : quantile(between_s, 0.5);
-  return median_s > 0.0 ? 1.0 / median_s : 0.0;
+  if (between_s.empty()) return;
+  pace.setpoint_gap_s = std::ranges::max(between_s);
+  const double median_s = quantile(std::move(between_s), 0.5);
+  if (median_s > 0.0) pace.setpoint_hz = 1.0 / median_s;
+}
+
+Pace::Losses losses_of(const record::Record& record) {
+  Pace::Losses losses;
+  for (const auto& logged : record.commands) {
+    const record::CommandEffect& effect = logged.message;
+    if (effect.loss.empty()) continue;
+    if (losses.count++ == 0)
+      losses = {
+          .count = 1, .first_at = effect.applied_at, .uav = effect.uav, .action = effect.loss};
+  }
+  return losses;
 }
 
 Pace pace_of(const record::Record& record, const record::SutInfo& sut) {
@@ -164,7 +178,7 @@ Pace pace_of(const record::Record& record, const record::SutInfo& sut) {
     if (record.footer && record.footer->st_at_end > SimTime{})
       pace.reading = std::min(1.0, all_s / to_seconds(record.footer->st_at_end));
   }
-  pace.setpoint_hz = setpoint_rate(record, sut.uav);
+  add_setpoints(record, sut.uav, pace);
   return pace;
 }
 
@@ -267,6 +281,7 @@ std::optional<Pace> pace_of(const record::Record& record) {
   if (!slowest) return std::nullopt;
   Pace found = *slowest;
   found.boards = board_paces(record, paces);
+  found.losses = losses_of(record);
   found.speed = speed_of(record.header);
   found.radio = to_text(record.header.radio);
   found.messages = record.radio.size();

@@ -74,6 +74,18 @@ TEST(Pace, HasTheRateOfSetpoints) {
   }
   record.autopilot.emplace_back(record.autopilot.back()).message.name = "HEARTBEAT";
   EXPECT_NEAR(pace_of(record)->setpoint_hz, 20.0, 1e-9);
+  EXPECT_NEAR(pace_of(record)->setpoint_gap_s, 0.86, 1e-9);
+}
+
+TEST(Pace, HasTheLossesOfSetpointsOfAllPrograms) {
+  record::Record record = record_of_reads();
+  for (const auto& [at_ms, loss] : {std::pair{10, ""}, {20, "hover"}, {30, ""}, {40, "land"}}) {
+    record::CommandEffect& effect = record.commands.emplace_back().message;
+    effect.uav = "uav2";
+    effect.applied_at = SimTime(milliseconds(at_ms));
+    effect.loss = loss;
+  }
+  EXPECT_EQ(pace_of(record)->losses, (Pace::Losses{2, SimTime(milliseconds(20)), "uav2", "hover"}));
 }
 
 TEST(Pace, ContainsWhatWasComputedWhenTheRunEnded) {

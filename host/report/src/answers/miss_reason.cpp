@@ -107,6 +107,8 @@ std::string possible_cause(const campaign::TrialResult& flight, const std::optio
   for (const judge::ClauseVerdict& clause : flight.clauses)
     if (!clause.met && !clause.quantity.empty() && clause.quantiles.empty())
       return fmt::format("“{}” has nothing to judge: {}", clause.name, clause.limited_by);
+  if (pace && pace->losses.count > 0 && pace->losses.action != name(uav::LossAction::kKeep))
+    return losses_text(pace->losses);
   if (pace && pace->messages > 0 && pace->messages_arrived == 0)
     return fmt::format("none of {} messages arrives", pace->messages);
   return "";

@@ -23,6 +23,13 @@ static_assert(kWantedSuccess == 0.9 && std::string_view(kWanted) == "9 of 10");
 
 constexpr std::size_t kMostMissed = 3;  // that a sentence names
 
+/// How long set-points were not sent, where their rate does not tell; empty: it does.
+std::string gap_text(const Pace& pace) {
+  constexpr double kMuchLonger = 3.0;
+  if (pace.setpoint_gap_s * pace.setpoint_hz < kMuchLonger) return "";
+  return fmt::format(" (but for up to {} not at all)", short_ms(pace.setpoint_gap_s));
+}
+
 /// "the camera is read 9 times a second instead of 30, and “detect” takes 81 % of the computing
 /// time"; empty: not known.
 std::string pace_text(const Pace& pace) {
@@ -45,7 +52,9 @@ std::string pace_text(const Pace& pace) {
   }
   if (pace.setpoint_hz > 0.0)
     text += fmt::format("{}set-points are sent {} times a second", text.empty() ? "" : ", ",
-                        rate_text(pace.setpoint_hz));
+                        rate_text(pace.setpoint_hz)) +
+            gap_text(pace);
+  if (pace.losses.count > 0) text += (text.empty() ? "" : ", ") + losses_text(pace.losses);
   if (!pace.stages.empty())
     text += fmt::format("{}“{}” takes {} of the computing time", text.empty() ? "" : ", and ",
                         pace.stages.front().stage, share_text(pace.stages.front().share));
@@ -230,13 +239,18 @@ std::string lead_of(const ConditionVerdict& condition) {
          left_out_in_lead(condition);
 }
 
-/// Of one of several points with the same ruling: what it rests on, in sentences.
-std::string cause_text(const ConditionVerdict& condition) {
+/// Of a point of a sweep, or the first of several with the same ruling: what it rests on, in
+/// sentences.
+std::string cause_text(const ConditionVerdict& condition, bool is_only_one) {
   if (condition.ruling == Ruling::kVoid || condition.ruling == Ruling::kSetUpFailed)
     return fmt::format(" The first reason: {}.", condition.reason);
   if (condition.ruling == Ruling::kUnseen) return " " + capital(evidence_of(condition));
-  if (condition.ruling == Ruling::kOtherReason) return reason_text(*condition.miss);
-  return doubts_text(condition);
+  std::string missed;
+  if (condition.is_missed() && is_only_one && !condition.missed.empty())
+    missed = fmt::format(" Not met: {}.", missed_text(condition.missed, condition.flown == 1));
+  if (condition.miss && (is_only_one || condition.ruling == Ruling::kOtherReason))
+    missed += reason_text(*condition.miss);
+  return missed + (condition.ruling == Ruling::kOtherReason ? "" : doubts_text(condition));
 }
 
 /// Of a sweep: how many pairs of its points differ in how often they reach the goal.
@@ -282,7 +296,7 @@ std::vector<Answer> sweep_answers(const std::vector<Verdict>& points) {
       Answer answer{(is_in_doubt(*first) ? "Doubtful whether " + ruling : capital(ruling)) +
                         left_out_in_lead(*first),
                     fmt::format(": “{}” with {}.{}", first->condition, joined_with_and(where),
-                                cause_text(*first))};
+                                cause_text(*first, where.size() == 1))};
       if (!leaves_out(*first)) answer.ruling = first->ruling;
       answers.push_back(std::move(answer));
     }

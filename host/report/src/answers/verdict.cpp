@@ -76,8 +76,6 @@ void count(ConditionVerdict& verdict, const campaign::TrialResult& trial) {
     if (is_doubtful(warning) && trial.outcome == campaign::Outcome::kGoalReached)
       add_to(verdict.doubtful_goals);
   }
-  for (const scenario::Varied& one : trial.varied)
-    if (std::ranges::count(verdict.varied, one.what) == 0) verdict.varied.push_back(one.what);
   if (trial.replay)
     for (const std::string& stage : trial.replay->unknown_stages)
       if (std::ranges::count(verdict.uncharged, stage) == 0) verdict.uncharged.push_back(stage);
@@ -141,6 +139,20 @@ Ruling ruling_of(const ConditionVerdict& verdict, const campaign::ConditionResul
   return shown_by(verdict.distinct_reached, verdict);
 }
 
+/// What has not the same value in all of them.
+std::vector<std::string> varied_in(const std::vector<const campaign::TrialResult*>& flights) {
+  std::vector<std::string> varied;
+  for (const campaign::TrialResult* flight : flights) {
+    const auto& own = flight->varied;
+    const auto& firsts = flights.front()->varied;
+    for (std::size_t i = 0; i < own.size(); ++i)
+      if ((i >= firsts.size() || own[i] != firsts[i]) &&
+          std::ranges::count(varied, own[i].what) == 0)
+        varied.push_back(own[i].what);
+  }
+  return varied;
+}
+
 /// What of a UAV's program was built again between these flights; empty: nothing.
 std::string mixed_build(const std::vector<const campaign::TrialResult*>& flights) {
   std::map<std::string, const Speed::Program*> firsts;  // of each UAV
@@ -202,6 +214,7 @@ ConditionVerdict verdict_of(const campaign::ConditionResults& results) {
   }
   verdict.missed = missed_limits(flown);
   verdict.mixed_build = mixed_build(flown);
+  verdict.varied = varied_in(flown);
   const auto distinct = campaign::distinct_flights(results.trials);
   verdict.distinct = distinct.size();
   verdict.distinct_reached = static_cast<std::size_t>(std::ranges::count(

@@ -37,6 +37,30 @@ TEST(Verdict, OfABusyMachineHoldsIfItsSpreadCannotChangeIt) {
   }
 }
 
+TEST(Verdict, SaysHowOftenSetpointsWereLost) {
+  for (const std::size_t reached : {0U, 1U}) {
+    Pace pace{.uav = "uav1", .setpoint_hz = 10.0, .setpoint_gap_s = 2.5};
+    const auto answer = [&] {
+      return answers_of({verdict_of(flights(reached, 1 - reached), {pace})})[0].rest;
+    };
+    EXPECT_THAT(answer(), HasSubstr("10 times a second (but for up to 2500 ms not at all)"));
+    EXPECT_THAT(answer(), testing::Not(HasSubstr("set-point for too long")));
+    pace.losses = {2, SimTime(std::chrono::milliseconds(3201)), "uav1", "hover"};
+    EXPECT_THAT(answer(), HasSubstr("no new set-point for too long 2 times, first at ST 3.201 s"));
+    pace.setpoint_gap_s = 0.2;
+    EXPECT_THAT(answer(), testing::Not(HasSubstr("not at all")));
+  }
+}
+
+TEST(Verdict, NamesOnlyWhatDiffersBetweenFlights) {
+  campaign::ScenarioResults scenario = flights(2, 0);
+  auto& trials = scenario.conditions[0].trials;
+  for (std::size_t i = 0; i < 2; ++i)
+    trials[i].varied = {{"a", "mass_factor", 1.5}, {"b", "start_x_m", static_cast<double>(i)}};
+  EXPECT_THAT(answers_of({verdict_of(scenario)})[0].rest,
+              HasSubstr(" The flights differ in start_x_m."));
+}
+
 // How far the flight would have gone beyond it is not known, and what came after was not flown.
 TEST(Verdict, AClauseThatEndsTheFlightIsTheOnlyOneToNameAndNoNearMiss) {
   campaign::ScenarioResults scenario = flights(0, 1);

@@ -23,6 +23,11 @@ TEST_F(MissReasons, AreSpeedBetweenPointsOfASweepOverIt) {
     results.scenarios.push_back(scenario_);
   }
   EXPECT_EQ(verdicts_of(results)[1].conditions[0].ruling, Ruling::kNotFastEnough);
+  EXPECT_THAT(answers_of(verdicts_of(results)),
+              testing::Contains(testing::Field(
+                  &Answer::rest,
+                  testing::AllOf(HasSubstr("with computing_ms = 300 (0 of 6 flights). Not met: "),
+                                 HasSubstr("“board with computing_ms = 2” is fast enough")))));
 }
 
 TEST_F(MissReasons, AreNotAFactorThatVariesTogetherWithAnotherKey) {

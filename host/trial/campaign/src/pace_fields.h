@@ -85,6 +85,13 @@ void fields(auto& io, Maybe<timing::Speed> auto& m) {
   io.some("target", m.target);
 }
 
+void fields(auto& io, Maybe<timing::Pace::Losses> auto& m) {
+  io("count", m.count);
+  io("first_at_s", m.first_at);
+  io("uav", m.uav);
+  io("action", m.action);
+}
+
 /// Without the seed, which the result has.
 void fields(auto& io, Maybe<timing::Pace> auto& m) {
   io("uav", m.uav);
@@ -100,7 +107,11 @@ void fields(auto& io, Maybe<timing::Pace> auto& m) {
     if (io.has("behind", m.behind > 0.0)) io("behind", m.behind);
     if (io.has("reading", m.reading < 1.0)) io("reading", m.reading);
   }
-  if (io.has("setpoint_hz", m.setpoint_hz > 0.0)) io("setpoint_hz", m.setpoint_hz);
+  if (io.has("setpoint_hz", m.setpoint_hz > 0.0)) {
+    io("setpoint_hz", m.setpoint_hz);
+    io("setpoint_gap_s", m.setpoint_gap_s);
+  }
+  if (io.has("losses", m.losses.count > 0)) io("losses", m.losses);
   io("shares_real_board", m.shares_real_board);
   if (io.has("shared_board", !m.shared_board.empty())) {
     io("shared_board", m.shared_board);

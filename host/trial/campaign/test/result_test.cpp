@@ -136,6 +136,8 @@ TEST_F(Result, ReadsBackWithEveryOptionalPart) {
                              .messages = 7,
                              .messages_arrived = 6};
   trial_.pace->setpoint_hz = 12.5;
+  trial_.pace->setpoint_gap_s = 0.5;
+  trial_.pace->losses = {2, SimTime(std::chrono::milliseconds(3201)), "uav1", "hover"};
   trial_.pace->speed = {.programs = {{.uav = "uav1",
                                       .clock = trial_.clock,
                                       .replay = record::ReplayInfo{"t", "exact", "now", "pi", "0a"},

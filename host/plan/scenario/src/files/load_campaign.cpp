@@ -76,6 +76,8 @@ void add_rows(const toml::Table& table, const std::string& path,
       add_rows(table.table(key), path + key + ".", folder, rows);
       continue;
     }
+    if (const std::string name = path + key; name == "name" || name == "condition.name")
+      table.fail(key, "tells flights apart, and changes none. Remove it from the sweep.");
     rows.emplace_back();
     std::set<std::string> seen;
     for (const std::string& value : table.scalars_as_texts(key)) {

@@ -118,6 +118,7 @@ TEST_F(LoadCampaign, RefusesSweepsThatCannotBeFlown) {
       {"time_limit_s = [5, 5]", "time_limit_s"},
       {"paired = true\ntime_limit_s = [5]\ncondition.cpu_factor = [1, 2]", "paired"},
       {"paired = true", "sweep"},
+      {"\"condition.name\" = [\"a\", \"b\"]", "condition.name"},
       {"", "sweep"}};
   for (const auto& [text, subject] : cases) {
     SCOPED_TRACE(text);

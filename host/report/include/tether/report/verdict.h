@@ -129,7 +129,7 @@ struct ConditionVerdict {
   std::vector<std::string> doubtful{}, doubtful_goals{};
   /// Stages that the flights computed for nothing: times are replayed, and have none of them.
   std::vector<std::string> uncharged{};
-  std::vector<std::string> varied{};  ///< what the scenario varies from flight to flight
+  std::vector<std::string> varied{};  ///< what differs from flight to flight, as the scenario says
   /// What differs in its build from flight to flight: "the program", "liblaw.so"; empty: nothing.
   std::string mixed_build{};
   std::optional<Pace> pace{};

@@ -98,6 +98,14 @@ struct Pace {
 
   /// Set-points that the program sent by MAVLink, one over the median time between two; 0: none.
   double setpoint_hz = 0.0;
+  double setpoint_gap_s = 0.0;  ///< the longest time between two of them
+  /// Of all programs: how often a flight controller waited too long for the next set-point.
+  struct Losses {
+    std::size_t count = 0;
+    SimTime first_at{};
+    std::string uav{}, action{};  ///< of the first one: what it does, "hover", "land", …
+    friend bool operator==(const Losses&, const Losses&) = default;
+  } losses{};
 
   Speed speed{};             ///< of all programs of the run
   std::string radio{};       ///< its settings, to compare them; empty: there is none

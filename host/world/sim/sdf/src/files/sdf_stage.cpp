@@ -207,7 +207,9 @@ void SdfStage::lower_version(const fs::path& file, XMLElement& root) {
   const auto version = parse_sdf_version(root.Attribute("version"));
   if (!version) {
     throw Error(ErrorCode::kBadFile, where,
-                "<sdf> has no version; write <sdf version='" + sdf::SDF::Version() + "'>")
+                std::string("<sdf> has no version") +
+                    (root.Attribute("version") ? " like 'MAJOR.MINOR'" : "") +
+                    "; write <sdf version='" + sdf::SDF::Version() + "'>")
         .about("<sdf>");
   }
   if (version <= parse_sdf_version(sdf::SDF::Version().c_str())) return;
