@@ -102,15 +102,22 @@ class BuiltIn : public FlightController {
     if (!has_begun_ && !settings_.starts_in_air && !set_down_.is_done(sensed.at, sensed.truth))
       return {.setpoint = SetDown::setpoint(), .sent = {}};
     if (!std::exchange(has_begun_, true)) begin();
-    for (const Bytes& bytes : received)
-      for (const mavlink::Frame& frame : decoder_.push_datagram(bytes)) on_frame(frame);
+    std::vector<Actions::Refusal> ignored;
+    for (std::size_t i = 0; i < received.size(); ++i) {
+      bool is_taken = true;
+      for (const mavlink::Frame& frame : decoder_.push_datagram(received[i]))
+        is_taken = on_frame(frame) && is_taken;
+      if (!is_taken) ignored.push_back({i, "ignored"});
+    }
     commander_.step();
     missions_.step(vehicle_.now, outbox_);
     parameter_port_.step(vehicle_.parameters, outbox_);
     uav::Setpoint wanted = navigator_.step(vehicle_, missions_, offboard_, since, outbox_);
     vehicle_.mount.add_to(wanted);
     telemetry_.step({vehicle_, sensed, wanted, missions_}, outbox_);
-    return {.setpoint = of_truth(wanted, sensed.truth), .sent = outbox_.take()};
+    return {.setpoint = of_truth(wanted, sensed.truth),
+            .sent = outbox_.take(),
+            .refused = std::move(ignored)};
   }
 
  private:
@@ -145,17 +152,24 @@ class BuiltIn : public FlightController {
     return component == 0 || component == kAutopilot;
   }
 
-  void on_frame(const mavlink::Frame& frame) {
+  /// False: it is a set-point that is not flown, whatever the mode.
+  bool on_frame(const mavlink::Frame& frame) {
     const mavlink::Message& m = frame.message;
-    if (!is_for_us(m)) return;
+    if (Offboard::takes(m)) {
+      if (!is_for_us(m)) return false;
+      const std::string wrong = offboard_.on_message(m, vehicle_);
+      if (wrong != std::exchange(last_complaint_, wrong) && !wrong.empty()) outbox_.say(4, wrong);
+      return wrong.empty();
+    }
+    if (is_for_us(m)) on_other(frame);
+    return true;
+  }
+
+  void on_other(const mavlink::Frame& frame) {
+    const mavlink::Message& m = frame.message;
     if (Commander::takes(m)) return commander_.on_message(frame);
     if (Missions::takes(m)) return missions_.on_message(frame, vehicle_, outbox_);
     if (ParameterPort::takes(m)) return parameter_port_.on_message(m, vehicle_.parameters, outbox_);
-    if (Offboard::takes(m)) {
-      const std::string wrong = offboard_.on_message(m, vehicle_);
-      if (wrong != std::exchange(last_complaint_, wrong) && !wrong.empty()) outbox_.say(4, wrong);
-      return;
-    }
     if (m.is("TIMESYNC") && m.integer("tc1") == 0)
       outbox_.send(mavlink::Message("TIMESYNC")
                        .set("tc1", to_ns(vehicle_.now))

@@ -2,22 +2,13 @@
 #include <string>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <tether/autopilot/flight_controller.h>
-#include <tether/base/text.h>
 #include <tether/mavlink/frame.h>
 
 namespace tether::autopilot {
 namespace {
-
-std::string quoted(const std::string& text) {
-  std::string quoted = "\"";
-  for (const char c : printable(text)) {
-    if (c == '"' || c == '\\') quoted += '\\';
-    quoted += c;
-  }
-  return quoted + '"';
-}
 
 std::string value_of(const mavlink::Message& m, const mavlink::Field& field, std::size_t i) {
   using mavlink::Type;
@@ -32,7 +23,9 @@ std::string value_of(const mavlink::Message& m, const mavlink::Field& field, std
 }
 
 std::string values_of(const mavlink::Message& m, const mavlink::Field& field) {
-  if (field.type == mavlink::Type::kChar) return quoted(m.text(field.name));
+  if (field.type == mavlink::Type::kChar)
+    return nlohmann::json(m.text(field.name))
+        .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   if (!field.is_array) return value_of(m, field, 0);
   std::string values = "[";
   for (std::size_t i = 0; i < field.count; ++i)

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <utility>
 
 #include <tether/autopilot/signing.h>
@@ -31,15 +32,20 @@ class WithSigning final : public FlightController {
 
   Actions step(const Sensed& sensed, const std::vector<Bytes>& received) override {
     std::vector<Bytes> taken;
+    std::vector<std::size_t> places;  // of these in `received`
     std::vector<Actions::Refusal> refused;
     for (std::size_t i = 0; i < received.size(); ++i) {
       mavlink::SignedLink::Opened opened = link_.open(received[i]);
-      if (opened.verdict == SignatureChecker::Verdict::kRight)
+      if (opened.verdict == SignatureChecker::Verdict::kRight) {
         taken.push_back(std::move(opened.frames));
-      else
+        places.push_back(i);
+      } else {
         refused.push_back({i, name(opened.verdict)});
+      }
     }
     Actions actions = controller_->step(sensed, taken);
+    for (const auto& [place, why] : actions.refused) refused.push_back({places[place], why});
+    std::ranges::sort(refused, {}, &Actions::Refusal::received);
     actions.refused = std::move(refused);
     for (Bytes& bytes : actions.sent) bytes = link_.sign(bytes, timestamp(sensed.at));
     return actions;

@@ -33,7 +33,7 @@ TEST(Decode, WritesWhatIsNoNumberAsNull) {
                           .set("time_usec", std::uint64_t{18'446'744'073'709'551'615U})
                           .set_text("name", "a\"b\\\n")));
   EXPECT_EQ(decoded.at(0).fields_json,
-            R"({"time_usec":18446744073709551615,"x":null,"y":null,"z":0.1,"name":"a\"b\\?"})");
+            R"({"time_usec":18446744073709551615,"x":null,"y":null,"z":0.1,"name":"a\"b\\\n"})");
 }
 
 TEST(Decode, WritesArraysAsArrays) {

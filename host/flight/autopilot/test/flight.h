@@ -150,6 +150,7 @@ class Flight {
   bool is_on_rope = false;     ///< does not move
   uav::Vec3 carried_m_s;       ///< what it stands on moves
   uav::Setpoint setpoint;      ///< what it follows
+  std::size_t refused = 0;     ///< messages that it did not take
   std::vector<Message> heard;  ///< from the controller
 
  private:
@@ -174,6 +175,7 @@ class Flight {
     for (const Bytes& bytes : actions.sent)
       for (const mavlink::Frame& frame : decoder_.push(bytes)) hear(frame);
     if (actions.setpoint) setpoint = *actions.setpoint;
+    refused += actions.refused.size();
     EXPECT_EQ(complaint_about(setpoint, limits_), "");
     for (int i = 0; i < 4; ++i) integrate();
     now += std::chrono::milliseconds(4);

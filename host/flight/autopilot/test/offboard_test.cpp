@@ -189,7 +189,12 @@ TEST(Offboard, RefusesNonsenseAndSaysSoOnce) {
     flight.heard.clear();
     flight.stream(message, 0.2);
     EXPECT_FALSE(flight.was_said("set-point ignored")) << text << ": it was said before";
+    const std::size_t refused = flight.refused;
+    EXPECT_GT(refused, 0U);
     flight.stream(position_target(0, 0, 0), 0.1);
+    EXPECT_EQ(flight.refused, refused);
+    flight.stream(position_target(0, 0, 0).set("target_system", 42), 0.1);
+    EXPECT_GT(flight.refused, refused);
     flight.stream(message, 0.1);
     EXPECT_TRUE(flight.was_said("set-point ignored")) << text;
     EXPECT_TRUE(flight.was_said(text)) << flight.last("STATUSTEXT")->text("text");

@@ -11,12 +11,14 @@ namespace {
 
 using testing::ElementsAre;
 
-/// Sends back what it receives.
+/// Sends back what it receives, and ignores the second message.
 class Returning final : public FlightController {
  public:
   void boot(const Sensed&) override { has_booted = true; }
   Actions step(const Sensed&, const std::vector<Bytes>& received) override {
-    return {.setpoint = {}, .sent = received};
+    Actions actions{.setpoint = {}, .sent = received};
+    if (received.size() > 1) actions.refused = {{1, "ignored"}};
+    return actions;
   }
   std::string version() const override { return has_booted ? "1.2.3" : ""; }
   bool has_booted = false;
@@ -56,9 +58,12 @@ TEST_F(SigningTest, SaysWhichMessagesItRefusesAndWhy) {
   mavlink::Signer other(mavlink::key_of_passphrase("x"), 2, std::uint64_t{1} << 46);
   const Actions actions =
       controller_->step({}, {unsigned_, mavlink::encode(ping_, {1, 191}, 0, &signer_),
-                             mavlink::encode(ping_, {1, 191}, 0, &other)});
-  EXPECT_EQ(actions.sent.size(), 1U);
-  ASSERT_EQ(actions.refused.size(), 2U);
+                             mavlink::encode(ping_, {1, 191}, 0, &other),
+                             mavlink::encode(ping_, {1, 191}, 1, &signer_)});
+  EXPECT_EQ(actions.sent.size(), 2U);
+  ASSERT_EQ(actions.refused.size(), 3U);
+  EXPECT_EQ(actions.refused[2].received, 3U);
+  EXPECT_EQ(actions.refused[2].why, "ignored");
   EXPECT_EQ(actions.refused[0].received, 0U);
   EXPECT_EQ(actions.refused[0].why, "not_signed");
   EXPECT_EQ(actions.refused[1].received, 2U);

@@ -4,9 +4,12 @@
 #include <map>
 #include <numeric>
 
+#include <fmt/format.h>
+
 #include <tether/stats/sample_statistics.h>
 #include <tether/timing/pace.h>
 #include <tether/timing/timing.h>
+#include <tether/uav/setpoint.h>
 
 namespace tether::timing {
 namespace {
@@ -132,10 +135,15 @@ void add_setpoints(const record::Record& record, const std::string& uav, Pace& p
 }
 
 Pace::Losses losses_of(const record::Record& record) {
+  std::map<std::string, ExecTime> ends;  // of the programs
+  for (const auto& logged : record.interactions)
+    ends[logged.message.uav] = logged.message.request_at;
   Pace::Losses losses;
   for (const auto& logged : record.commands) {
     const record::CommandEffect& effect = logged.message;
-    if (effect.loss.empty()) continue;
+    if (effect.loss.empty() || effect.loss == name(uav::LossAction::kKeep) ||
+        same_instant(effect.applied_at) > ends[effect.uav])
+      continue;
     if (losses.count++ == 0)
       losses = {
           .count = 1, .first_at = effect.applied_at, .uav = effect.uav, .action = effect.loss};
@@ -229,6 +237,14 @@ Speed speed_of(const record::Header& header) {
 }
 
 }  // namespace
+
+std::string Pace::Losses::text() const {
+  return fmt::format(
+      "had no new set-point for too long {} ST {:.3f} s, and its flight controller did what "
+      "on_setpoint_loss = \"{}\" says",
+      count == 1 ? "once, at" : fmt::format("{} times, first at", count), to_seconds(first_at),
+      action);
+}
 
 bool Speed::is_scripted() const {
   return !programs.empty() && std::ranges::all_of(programs, [](const Program& program) {

@@ -79,7 +79,10 @@ TEST(Pace, HasTheRateOfSetpoints) {
 
 TEST(Pace, HasTheLossesOfSetpointsOfAllPrograms) {
   record::Record record = record_of_reads();
-  for (const auto& [at_ms, loss] : {std::pair{10, ""}, {20, "hover"}, {30, ""}, {40, "land"}}) {
+  record.interactions.back().message.uav = "uav2";  // its program ends then
+  record.interactions.back().message.request_at = ExecTime(milliseconds(40));
+  for (const auto& [at_ms, loss] :
+       {std::pair{10, ""}, {15, "keep"}, {20, "hover"}, {30, ""}, {40, "land"}, {50, "land"}}) {
     record::CommandEffect& effect = record.commands.emplace_back().message;
     effect.uav = "uav2";
     effect.applied_at = SimTime(milliseconds(at_ms));

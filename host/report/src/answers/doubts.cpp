@@ -66,15 +66,6 @@ std::string doubt_text(const FlightsInDoubt& doubt, const ConditionVerdict& cond
          where;
 }
 
-std::string losses_text(const Pace::Losses& losses) {
-  return fmt::format(
-      "the flight controller of “{}” had no new set-point for too long {} ST {:.3f} s, and did "
-      "what "
-      "on_setpoint_loss = \"{}\" says",
-      losses.uav, losses.count == 1 ? "once, at" : fmt::format("{} times, first at", losses.count),
-      to_seconds(losses.first_at), losses.action);
-}
-
 std::string left_out_text(const ConditionVerdict& condition) {
   return fmt::format(" Not simulated as written, which can change the answer: {}.",
                      named(condition.left_out));

@@ -8,10 +8,6 @@
 /// What limits the evidence of an answer, in sentences that begin with a space.
 namespace tether::report {
 
-/// "the flight controller of “uav1” had no new set-point for too long once, at ST 3.201 s, and did
-/// what on_setpoint_loss = "hover" says". @pre count > 0
-std::string losses_text(const Pace::Losses& losses);
-
 /// A part of a sentence: "the program of uav1 waited 0.2 s for the disk, …".
 std::string doubt_text(const FlightsInDoubt& doubt, const ConditionVerdict& condition);
 /// The first of several lines, as far as a sentence can name them.

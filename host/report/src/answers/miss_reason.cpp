@@ -29,8 +29,7 @@ namespace {
 using Evidence = MissReason::Evidence;
 
 constexpr SimTime kBeforeAnyProgram{std::chrono::milliseconds(50)};
-constexpr double kHardlyAnyEnergy = 0.05;  // of all that a flight takes
-constexpr double kEmpty = 0.01;            // share of the battery's capacity
+constexpr double kEmpty = 0.01;  // share of the battery's capacity
 
 // What happened in a flight.
 
@@ -86,18 +85,11 @@ std::string possible_cause(const campaign::TrialResult& flight, const std::optio
   for (const Warning& warning : flight.warnings)
     if (warning.consequence == Consequence::kDoubtful)
       return warning.subject + " " + warning.message;
-  for (const campaign::MetricValue& metric : flight.metrics)
-    if (flight.end == campaign::kEndTimeLimit && metric.name == "time_required" && metric.max &&
-        *metric.max > to_seconds(flight.sync.st_at_end))
-      return fmt::format(
-          "the time limit ended the flight at {:.4g} s, before {} of at most {:g} s "
-          "could be missed",
-          to_seconds(flight.sync.st_at_end), in_a_sentence(metric.label), *metric.max);
   for (const campaign::UavEnergy& own : flight.energy) {
     const double computing_J = own.spent_J[static_cast<std::size_t>(energy::Cause::kComputing)] +
                                own.spent_J[static_cast<std::size_t>(energy::Cause::kIdle)];
     const double share = computing_J / std::max(campaign::total_J(own.spent_J), 1e-9);
-    if (own.is_empty() && share < kHardlyAnyEnergy)
+    if (own.is_empty())
       return fmt::format(
           "the battery of {} is empty at the end, and the computer took {:.2g} % of "
           "its energy",
@@ -107,8 +99,8 @@ std::string possible_cause(const campaign::TrialResult& flight, const std::optio
   for (const judge::ClauseVerdict& clause : flight.clauses)
     if (!clause.met && !clause.quantity.empty() && clause.quantiles.empty())
       return fmt::format("“{}” has nothing to judge: {}", clause.name, clause.limited_by);
-  if (pace && pace->losses.count > 0 && pace->losses.action != name(uav::LossAction::kKeep))
-    return losses_text(pace->losses);
+  if (pace && pace->losses.count > 0)
+    return fmt::format("UAV '{}' {}", pace->losses.uav, pace->losses.text());
   if (pace && pace->messages > 0 && pace->messages_arrived == 0)
     return fmt::format("none of {} messages arrives", pace->messages);
   return "";
@@ -128,6 +120,25 @@ std::string limit_below_computing(const campaign::TrialResult& flight,
     const double unit_s = clause.unit == "ms" ? 1e-3 : 1.0;
     return fmt::format("From an image to its command, computing takes {}, longer than “{}” allows",
                        short_ms(unit_s * *clause.median_of_computing), clause.name);
+  }
+  return "";
+}
+
+/// What computing would be if it were any: it takes as long under another condition, whose
+/// computers are much faster or slower. Empty: there is no such condition.
+std::string unscaled_computing(const Compared& missed, const std::vector<Compared>& all) {
+  constexpr double kSameTimes = 1.25, kOtherSpeed = 2.0;
+  for (const Compared& other : all) {
+    const auto slowdown = slowdown_of(missed, other);
+    if (!slowdown || (*slowdown<kOtherSpeed&& * slowdown> 1.0 / kOtherSpeed)) continue;
+    const auto costs = costs_of(*missed.pace(), *other.pace());
+    if (costs && costs->own_s <= kSameTimes * costs->other_s &&
+        costs->other_s <= kSameTimes * costs->own_s)
+      return fmt::format(
+          "{} {}, and {} on “{}”, which is {:.2g} × {}: the program probably waits for its clock, "
+          "which no computer changes",
+          costs->what, short_ms(costs->own_s), short_ms(costs->other_s), other.label,
+          std::max(*slowdown, 1.0 / *slowdown), *slowdown > 1.0 ? "faster" : "slower");
   }
   return "";
 }
@@ -218,8 +229,11 @@ MissReason reason_of(const Compared& missed, const std::vector<Compared>& all,
   const bool misses_faster = std::ranges::any_of(
       faster, [](const Compared* other) { return other->verdict->is_missed(); });
   if (const std::string limit = in_each(missed, limit_below_computing);
-      !limit.empty() && !misses_faster)
-    return {Evidence::kMissesOwnPace, "", limit};
+      !limit.empty() && !misses_faster) {
+    const std::string unscaled = unscaled_computing(missed, all);
+    return {unscaled.empty() ? Evidence::kMissesOwnPace : Evidence::kKnownCause, "",
+            unscaled.empty() ? limit : unscaled};
+  }
   const bool some_speed_suffices = std::ranges::any_of(all, [&](const Compared& other) {
     return differ_in_speed_only(other, missed) && is_sufficient(other.verdict->ruling);
   });

@@ -54,7 +54,6 @@ std::string pace_text(const Pace& pace) {
     text += fmt::format("{}set-points are sent {} times a second", text.empty() ? "" : ", ",
                         rate_text(pace.setpoint_hz)) +
             gap_text(pace);
-  if (pace.losses.count > 0) text += (text.empty() ? "" : ", ") + losses_text(pace.losses);
   if (!pace.stages.empty())
     text += fmt::format("{}“{}” takes {} of the computing time", text.empty() ? "" : ", and ",
                         pace.stages.front().stage, share_text(pace.stages.front().share));
@@ -139,6 +138,14 @@ std::string undecided_text(const ConditionVerdict& condition) {
   return fmt::format(" So few flights show neither that {} reach it nor that fewer do.", kWanted);
 }
 
+/// Of a missed goal; empty: none was lost, or that is its reason.
+std::string losses_text(const ConditionVerdict& condition) {
+  if (!condition.pace || condition.pace->losses.count == 0 ||
+      condition.miss->evidence == MissReason::Evidence::kPossibleCause)
+    return "";
+  return fmt::format(" UAV '{}' {}.", condition.pace->losses.uav, condition.pace->losses.text());
+}
+
 std::string evidence_of(const ConditionVerdict& condition) {
   const std::string pace = condition.pace ? pace_text(*condition.pace) : "";
   const std::string with_pace = pace.empty() ? "." : "; " + pace + ".";
@@ -162,7 +169,8 @@ std::string evidence_of(const ConditionVerdict& condition) {
     }
     case Ruling::kNotFastEnough:
     case Ruling::kGoalMissed:
-      return missed_goals_text(condition) + with_pace + reason_text(*condition.miss);
+      return missed_goals_text(condition) + with_pace + reason_text(*condition.miss) +
+             losses_text(condition);
     case Ruling::kOtherReason:
       return missed_goals_text(condition) + "." + reason_text(*condition.miss);
     case Ruling::kNotFlown:

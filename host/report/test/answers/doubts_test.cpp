@@ -44,11 +44,14 @@ TEST(Verdict, SaysHowOftenSetpointsWereLost) {
       return answers_of({verdict_of(flights(reached, 1 - reached), {pace})})[0].rest;
     };
     EXPECT_THAT(answer(), HasSubstr("10 times a second (but for up to 2500 ms not at all)"));
-    EXPECT_THAT(answer(), testing::Not(HasSubstr("set-point for too long")));
-    pace.losses = {2, SimTime(std::chrono::milliseconds(3201)), "uav1", "hover"};
-    EXPECT_THAT(answer(), HasSubstr("no new set-point for too long 2 times, first at ST 3.201 s"));
     pace.setpoint_gap_s = 0.2;
     EXPECT_THAT(answer(), testing::Not(HasSubstr("not at all")));
+    pace.losses = {2, SimTime(std::chrono::milliseconds(3201)), "uav1", "hover"};
+    // Of a flight that reached the goal, campaign makes a doubt of it.
+    EXPECT_EQ(
+        answer().find("UAV 'uav1' had no new set-point for too long 2 times, first at ST 3.201 "
+                      "s") != std::string::npos,
+        reached == 0);
   }
 }
 

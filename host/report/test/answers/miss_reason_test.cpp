@@ -229,6 +229,12 @@ TEST_F(MissReasons, AreNotSpeedByALimitThatComputingIsNoPartOf) {
   program(board).clock.factor = 2.0;
   add("host", 0, 1, measured(0.1));
   EXPECT_EQ(ruling(board), Ruling::kGoalMissed) << "a faster condition misses it, too";
+  const std::size_t slow = add("slow", 0, 1, measured(0.22));
+  program(slow).clock.factor = 12.0;
+  paces_[1].reset();
+  EXPECT_EQ(ruling(board), Ruling::kOtherReason);
+  EXPECT_THAT(verdict().conditions[board].miss->text,
+              HasSubstr("an image costs 200 ms, and 220 ms on “slow”, which is 6 × slower"));
 }
 
 TEST_F(MissReasons, AreNotSpeedByAWallClockThatMeasuresWaitsToo) {

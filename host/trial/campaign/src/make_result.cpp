@@ -91,6 +91,13 @@ std::optional<ReplayReport> replay_of(const record::Record& record) {
   return ReplayReport{*replayed->replay, {unknown.begin(), unknown.end()}};
 }
 
+// Where the goal is missed, that can be why, also on a computer that is too slow.
+void check_losses(TrialResult& result, const timing::Pace::Losses& losses) {
+  const auto own = std::ranges::find(result.suts, losses.uav, &SutResult::uav);
+  if (losses.count > 0 && own != result.suts.end() && own->reached_goal)
+    result.warnings.push_back(doubt_about(losses.uav, losses.text()));
+}
+
 // Empty: it was reached.
 std::string why_missed(const SutResult& sut) {
   if (!sut.finished) return fmt::format("the SUT of '{}' did not finish", sut.uav);
@@ -230,6 +237,7 @@ TrialResult make_result(const scenario::Scenario& scenario, const scenario::Cond
     for (std::size_t i = 0; i < result.pace->speed.programs.size(); ++i)
       if (const auto& target = computer_of(condition, i).target)
         result.pace->speed.programs[i].cores = target->cores;
+  if (result.pace) check_losses(result, result.pace->losses);
   result.flight_digest = flight_digest(record);
   result.versions = {{"tether", record.header.tether_version},
                      {"simulator", record.header.simulator}};

@@ -30,10 +30,19 @@ std::string refusal_of(const record::Record& record, const std::string& uav) {
   return refusal;
 }
 
+/// Whether that is OFFBOARD of PX4, or GUIDED (also without GPS) of ArduPilot's copters.
+bool follows_setpoints(int autopilot, int custom_mode) {
+  constexpr int kArduPilot = 3, kGuided = 4, kGuidedNoGps = 20;  // MAV_AUTOPILOT, COPTER_MODE
+  constexpr int kMainMode = 16, kOffboard = 6;                   // bits of PX4's custom_mode
+  if (autopilot == kArduPilot) return custom_mode == kGuided || custom_mode == kGuidedNoGps;
+  return (custom_mode >> kMainMode & 0xFF) == kOffboard;
+}
+
 /// What its flight controller says of a UAV, as far as it can make a good end doubtful.
 struct Said {
   std::map<int, int> answers;  ///< the last one to each command (MAV_RESULT)
   int mission = 0;             ///< the last answer to a mission (MAV_MISSION_RESULT)
+  bool follows = false;        ///< it was in a mode in which it flies set-points
   std::optional<SimTime> failsafe_at{};
   bool is_armed = true;  ///< as far as it says
 };
@@ -49,6 +58,7 @@ Said said_of(const record::Record& record, const std::string& uav) {
       said.answers[fields.value("command", 0)] = fields.value("result", 0);
     if (m.name == "MISSION_ACK") said.mission = fields.value("type", 0);
     if (m.name != "HEARTBEAT" || fields.value("autopilot", 0) == kNoAutopilot) continue;
+    said.follows |= follows_setpoints(fields.value("autopilot", 0), fields.value("custom_mode", 0));
     said.is_armed = (fields.value("base_mode", 0) & kArmed) != 0;
     if (fields.value("system_status", 0) >= kCritical && !said.failsafe_at)
       said.failsafe_at = m.sent_at;
@@ -124,6 +134,31 @@ Motion motion_of(const record::Record& record, const std::string& uav) {
   return motion;
 }
 
+/// Of a program that says that it reached its goal: what became of the commands of its own.
+void check_commands(const record::Record& record, const Motion& motion, const std::string& uav,
+                    std::vector<Warning>& warnings) {
+  for (const auto& logged : record.annotations) {
+    if (logged.message.uav != uav || logged.message.topic != uav::kRefusedCommands) continue;
+    const auto told = nlohmann::json::parse(logged.message.json, nullptr, false);
+    if (told.is_object() && told.value("count", 0U) > 0)
+      warnings.push_back(doubt_about(
+          uav, fmt::format("was not given {} of its program, which Tether's library refused",
+                           counted(told.value("count", 0U), "command"))));
+  }
+  const auto is_own = [&](const auto& logged) { return logged.message.uav == uav; };
+  const auto moves = [&](const auto& logged) {
+    const record::CommandEffect& m = logged.message;
+    return is_own(logged) && (m.setpoint || m.vx_H_m_s != 0.0 || m.vy_H_m_s != 0.0 ||
+                              m.vz_H_m_s != 0.0 || m.yaw_rate_rad_s != 0.0);
+  };
+  if (motion.first != nullptr && !motion.has_moved && !motion.has_turned &&
+      std::ranges::any_of(record.commands, is_own) && std::ranges::none_of(record.commands, moves))
+    warnings.push_back(doubt_about(
+        uav,
+        "never left its start, and was commanded nothing but to stay: a slow computer can do "
+        "that, too"));
+}
+
 /// As check_program, of a program with a flight controller.
 void check_companion(const record::Record& record, const Motion& motion, bool nothing,
                      SutResult& sut, std::vector<Warning>& warnings) {
@@ -135,14 +170,24 @@ void check_companion(const record::Record& record, const Motion& motion, bool no
   const auto doubt = [&](const std::string& what) {
     warnings.push_back(doubt_about(sut.uav, what));
   };
-  if (const auto refused = std::ranges::count_if(record.autopilot, [&](const auto& logged) {
-        return logged.message.uav == sut.uav && logged.message.part == 0 &&
-               logged.message.is_refused();
-      }))
+  std::size_t unsigned_ones = 0, ignored = 0, setpoints = 0;
+  for (const auto& logged : record.autopilot) {
+    const record::AutopilotMessage& m = logged.message;
+    if (m.uav != sut.uav) continue;
+    unsigned_ones += m.part == 0 && m.is_unsigned() ? 1U : 0U;
+    ignored += m.part == 0 && m.outcome == record::kIgnored ? 1U : 0U;
+    setpoints += m.is_setpoint() && m.outcome == record::kDelivered ? 1U : 0U;
+  }
+  if (unsigned_ones > 0)
     doubt(
-        fmt::format("has a flight controller that refused {} message{} of its program: "
-                    "not signed with the key of 'signing_key_file', or sent again",
-                    refused, refused > 1 ? "s" : ""));
+        fmt::format("has a flight controller that refused {} of its program: not signed with the "
+                    "key of 'signing_key_file', or sent again",
+                    counted(unsigned_ones, "message")));
+  if (ignored > 0)
+    doubt(
+        fmt::format("has a flight controller that ignored {} of its program: of a frame, a type "
+                    "mask or values that it does not fly, or for another system",
+                    counted(ignored, "set-point")));
   const bool has_sent = std::ranges::any_of(record.autopilot, is_sent);
   if (nothing) return doubt(kDidNothing);
   const std::string refusal = refusal_of(record, sut.uav);
@@ -160,6 +205,11 @@ void check_companion(const record::Record& record, const Motion& motion, bool no
     doubt(fmt::format("has a flight controller that was in a failsafe at ST {:.3f} s{}",
                       to_seconds(*said.failsafe_at), why));
   const auto& [first, last, has_moved, has_turned] = motion;
+  if (constexpr std::size_t kFew = 5; setpoints > kFew && !said.follows)
+    doubt(
+        fmt::format("has a flight controller that flew none of the {} of its program: it was never "
+                    "in OFFBOARD (PX4, built-in) or GUIDED (ArduPilot)",
+                    counted(setpoints, "set-point")));
   if (!has_sent) return doubt("has a flight controller to which its program sent no message");
   const bool began_in_air = first != nullptr && first->clearance_m && *first->clearance_m > kAway_m;
   if (!has_moved && !(began_in_air && has_turned))
@@ -189,6 +239,7 @@ std::string check_program(const record::Record& record, const record::SutInfo& i
     warnings.push_back(doubt_about(
         info.uav, fmt::format("sinks at {:.3g} m/s, {:.3g} m from anything, when its program ends",
                               -motion.last->v_WB_m_s[2], *motion.last->clearance_m)));
+  if (sut.reached_goal) check_commands(record, motion, info.uav, warnings);
   constexpr std::ptrdiff_t kHardlyAny = 5;
   const std::ptrdiff_t calls = calls_of(record, info);
   const bool nothing = calls == 0;

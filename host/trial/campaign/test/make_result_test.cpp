@@ -210,6 +210,38 @@ TEST_F(MakeResult, WhatTheFlightControllerDeniedOrDidByItselfIsDoubtful) {
   EXPECT_THAT(doubts(), HasSubstr("is in the air")) << "disarmed";
   record.ground_truth.back().message.v_WB_m_s[2] = -2.3;
   EXPECT_THAT(doubts(), HasSubstr("sinks at 2.3 m/s, 2 m from anything, when its program ends"));
+  record = fine;
+  for (int i = 0; i < 6; ++i) say("SET_ATTITUDE_TARGET", "{}", true);
+  EXPECT_THAT(doubts(), HasSubstr("flew none of the 6 set-points of its program"));
+  say("HEARTBEAT", R"({"base_mode": 217, "system_status": 4, "custom_mode": 393216})");
+  EXPECT_EQ(doubts(), "") << "it was in OFFBOARD";
+  record.autopilot[record.autopilot.size() - 2].message.outcome = record::kIgnored;
+  EXPECT_THAT(doubts(), HasSubstr("ignored 1 set-point of its program"));
+}
+
+TEST_F(MakeResult, CommandsThatHadNoEffectAreDoubtful) {
+  record::Record record = finished_record();
+  record.header.policy = record::kConservativeBarrier;
+  record.ground_truth.push_back(record.ground_truth.front());
+  const auto doubts = [&](const std::vector<TaskEnd>& ends) {
+    std::string lines;
+    for (const Warning& warning : make(record, ends).warnings) lines += to_line(warning) + "\n";
+    return lines;
+  };
+  record::CommandEffect& command = record.commands.emplace_back().message;
+  command.uav = "uav1";
+  command.yaw_rate_rad_s = 0.1;
+  EXPECT_THAT(doubts(kReached), testing::Not(HasSubstr("commanded nothing")));
+  command.yaw_rate_rad_s = 0.0;
+  EXPECT_THAT(doubts(kReached), HasSubstr("was commanded nothing but to stay"));
+  record.ground_truth.back().message.p_WB_m[0] += 1.0;
+  EXPECT_EQ(doubts(kReached), "") << "it moved";
+  record.annotations.push_back({{}, 0, {"uav1", {}, uav::kRefusedCommands, R"({"count": 20})"}});
+  EXPECT_THAT(doubts(kReached), HasSubstr("was not given 20 commands of its program"));
+  record.annotations.clear();
+  command.loss = "land";
+  EXPECT_THAT(doubts(kReached), HasSubstr("had no new set-point for too long once, at ST 0.000 s"));
+  EXPECT_EQ(doubts({{"uav1", false, "late", {}}}), "") << "a slow computer can be why";
 }
 
 TEST_F(MakeResult, TakesEverythingFromTheRecord) {

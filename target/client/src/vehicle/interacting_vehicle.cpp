@@ -252,23 +252,34 @@ Result<std::optional<RadioMessage>> InteractingVehicle::receive_or_measure(
 // --- commands and the end -----------------------------------------------------------------------
 
 Status InteractingVehicle::command_velocity(const uav::VelocityCommand& command) {
-  return status_of(interact(link::SetVelocity{command}));
+  return commanded(status_of(interact(link::SetVelocity{command})));
 }
 
 Status InteractingVehicle::follow(std::span<const uav::TimedSetpoint> trajectory) {
   if (const std::string wrong = complaint_about(trajectory, catalogue_.limits); !wrong.empty())
-    return Failure{Failure::Kind::kInvalid, "the command is invalid: " + wrong};
+    return commanded(Failure{Failure::Kind::kInvalid, "the command is invalid: " + wrong});
   if (trajectory.size() == 1 && trajectory[0].after == Duration(0))
     if (const auto velocity = heading_velocity(trajectory[0].setpoint))
       return command_velocity(*velocity);
   link::SetTrajectory set;
   for (const auto& [after, setpoint] : trajectory)
     set.setpoints.push_back({after, without_ignored(setpoint)});
-  return status_of(interact(std::move(set)));
+  return commanded(status_of(interact(std::move(set))));
 }
 
+Status InteractingVehicle::commanded(Status status) {
+  if (!status && status.failure().kind == Failure::Kind::kInvalid) ++refused_commands_;
+  return status;
+}
+
+// Who ignores that commands are refused may say that it has reached its goal.
 Status InteractingVehicle::finish(bool reached_goal, std::string_view outcome,
                                   std::string_view details_json) {
+  if (refused_commands_ > 0)
+    if (const Status noted = annotate(uav::kRefusedCommands,
+                                      "{\"count\": " + std::to_string(refused_commands_) + "}");
+        !noted)
+      return noted;
   Status done = status_of(
       interact(link::Finish{reached_goal, std::string(outcome), std::string(details_json)}));
   if (done) close();

@@ -80,6 +80,8 @@ class InteractingVehicle : public Vehicle {
   Status usable() const;
 
  private:
+  /// Counts commands that were invalid. @return `status`
+  Status commanded(Status status);
   Result<uav::Sample> take_sample(link::Reply reply, const uav::SensorDescription& sensor,
                                   Read read);
   Failure no_such_sensor(std::string_view sensor, uav::SensorKind kind) const;
@@ -88,6 +90,7 @@ class InteractingVehicle : public Vehicle {
   uav::Catalogue catalogue_;
   std::vector<std::string> peers_;
   std::vector<std::atomic<std::uint32_t>> queues_;  // of each sensor
+  std::atomic<std::uint64_t> refused_commands_ = 0;
   pid_t process_ = ::getpid();
   mutable std::mutex mutex_;
   std::optional<Failure> over_;  // guarded by mutex_

@@ -276,6 +276,19 @@ TEST_F(SimulatedVehicleTest, AnnotationsAreStampedAndFree) {
   EXPECT_EQ(std::get<Request>(heard.at(1)).issued_at, ExecTime(4ms));
 }
 
+TEST_F(SimulatedVehicleTest, SaysAtItsEndHowManyCommandsItRefused) {
+  start();
+  for (int i = 0; i < 2; ++i)
+    expect_failure(vehicle_->command_velocity({{1e9, 0, 0}, 0}), Failure::Kind::kInvalid);
+  expect_failure(vehicle_->follow({}), Failure::Kind::kInvalid);
+  ASSERT_TRUE(vehicle_->finish(true, "done", "").ok());
+  const auto heard = coordinator_->heard();
+  ASSERT_EQ(heard.size(), 2u);
+  const auto& annotation = std::get<link::Annotation>(heard[0]);
+  EXPECT_EQ(annotation.topic, uav::kRefusedCommands);
+  EXPECT_EQ(annotation.json, R"({"count": 3})");
+}
+
 TEST_F(SimulatedVehicleTest, ReportsTheLastRoundTrip) {
   start([this](const Request& r) {
     wall_->advance(Duration(1000) * r.sequence);

@@ -84,6 +84,10 @@ struct TimedSetpoint {
 inline constexpr std::size_t kMaxTrajectorySetpoints = 1024;
 inline constexpr Duration kLongestTrajectory = std::chrono::hours(1);
 
+/// Topic of an annotation with which the library's programs end if it refused commands of theirs,
+/// which were invalid: {"count": 20}.
+inline constexpr const char* kRefusedCommands = "refused_commands";
+
 /// What a flight controller does when no command has arrived for too long.
 enum class LossAction {
   kKeep,   ///< goes on with the last set-point

@@ -96,17 +96,17 @@ std::vector<std::string> names_of(const Campaign& campaign) {
 }
 
 TEST_F(LoadCampaign, SweepsAllCombinationsOrPairs) {
-  const std::string keys = "time_limit_s = [5, 6]\ncondition.cpu_factor = [1, 2.5]\n";
+  const std::string keys = "time_limit_s = [50, 60]\ncondition.cpu_factor = [1, 2.5]\n";
   const Campaign grid = load_with("[[scenario]]", "[sweep]\n" + keys + "[[scenario]]");
   EXPECT_THAT(
       names_of(grid),
-      ElementsAre("full-cpu_factor-1-time_limit_s-5", "full-cpu_factor-1-time_limit_s-6",
-                  "full-cpu_factor-2.5-time_limit_s-5", "full-cpu_factor-2.5-time_limit_s-6"));
+      ElementsAre("full-cpu_factor-1-time_limit_s-50", "full-cpu_factor-1-time_limit_s-60",
+                  "full-cpu_factor-2.5-time_limit_s-50", "full-cpu_factor-2.5-time_limit_s-60"));
   EXPECT_EQ(grid.scenarios[2].scenario.find_condition("host")->computers[0].clock.factor, 2.5);
   EXPECT_EQ(grid.scenarios[2].swept_from, "full");
   EXPECT_THAT(
       names_of(load_with("[[scenario]]", "[sweep]\npaired = true\n" + keys + "[[scenario]]")),
-      ElementsAre("full-cpu_factor-1-time_limit_s-5", "full-cpu_factor-2.5-time_limit_s-6"));
+      ElementsAre("full-cpu_factor-1-time_limit_s-50", "full-cpu_factor-2.5-time_limit_s-60"));
 }
 
 TEST_F(LoadCampaign, RefusesSweepsThatCannotBeFlown) {

@@ -20,7 +20,7 @@ class Settings : public testing::Test {
 };
 
 TEST_F(Settings, ReplaceValuesByTheirPathFromTheTopAConditionOrAUav) {
-  EXPECT_EQ(load({{"time_limit_s", "7"}}).time_limit, std::chrono::seconds(7));
+  EXPECT_EQ(load({{"time_limit_s", "70"}}).time_limit, std::chrono::seconds(70));
   EXPECT_EQ(load({{"condition.cpu_factor", "9"}}).find_condition("host")->computers[0].clock.factor,
             9);
   EXPECT_EQ(load({{"cpu_factor", "9"}}).find_condition("host")->computers[0].clock.factor, 9);
@@ -57,8 +57,8 @@ TEST_F(Settings, ReplaceArrays) {
 
 TEST_F(Settings, AreInTheScenariosName) {
   const std::string name = load({}).name;
-  EXPECT_EQ(load({{"time_limit_s", "7"}, {"condition.cpu_factor", "0.5"}}).name,
-            name + "-time_limit_s-7-cpu_factor-0.5");
+  EXPECT_EQ(load({{"time_limit_s", "70"}, {"condition.cpu_factor", "0.5"}}).name,
+            name + "-time_limit_s-70-cpu_factor-0.5");
   const auto file = scratch_.write("far/other rig.toml", replaced(kRigProfile, "\"rig\"", "\"o\""));
   EXPECT_EQ(load({{"uav.profile", file.string()}}).name, name + "-profile-other-rig");
 }

@@ -278,7 +278,7 @@ const Schema kAutopilotMessageSchema{"tether.AutopilotMessage", R"json({
     "at_ns": {"type": "integer", "description": "when it arrived, or was lost"},
     "acted_at_ns": {"type": "integer", "description": "step of the controller that took it"},
     "outcome": {"type": "string", "enum": ["delivered", "queue_full", "inbox_full", "waiting", "not_signed",
-                                           "wrong_signature", "old_signature"]},
+                                           "wrong_signature", "old_signature", "ignored"]},
     "name": {"type": "string", "description": "of the MAVLink message; empty: not known"},
     "fields": {"type": "object", "description": "in the units of the MAVLink message"}
   },

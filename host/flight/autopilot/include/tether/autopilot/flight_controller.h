@@ -35,7 +35,8 @@ struct Actions {
   std::vector<Bytes> sent;                  ///< to the companion, in this order
   /// What a ground station had sent, and the controller took.
   std::vector<Bytes> of_station{};
-  /// Of what it received: messages that were not taken, and why ("not_signed").
+  /// Of what it received, in that order: messages that were not taken, and why: "not_signed", …, or
+  /// "ignored", a set-point that it cannot fly, or that is for another system.
   struct Refusal {
     std::size_t received = 0;
     std::string_view why;

@@ -56,6 +56,7 @@ inline constexpr std::string_view kDelivered = "delivered";
 inline constexpr std::string_view kWaiting = "waiting";  ///< at the end of the run
 inline constexpr std::string_view kQueueFull = "queue_full";
 inline constexpr std::string_view kInboxFull = "inbox_full";
+inline constexpr std::string_view kIgnored = "ignored";  ///< see AutopilotMessage::outcome
 
 /// Where an anchor is seen in an image: the first and last column and row of its visible pixels.
 struct SeenAnchor {
@@ -264,7 +265,8 @@ struct AutopilotMessage {
   SimTime at;               ///< when it arrived or was lost
   std::optional<SimTime> acted_at{};  ///< the step of the controller that has taken it
   /// "delivered", "queue_full", "inbox_full" or "waiting"; of a signed link, also "not_signed",
-  /// "wrong_signature" and "old_signature": the controller refused it.
+  /// "wrong_signature" and "old_signature": the controller refused it. "ignored": a
+  /// set-point that the built-in controller cannot fly, or that is for another system.
   std::string outcome;
   std::string name;    ///< of the MAVLink message; empty: the bytes are no message that is known
   std::string fields;  ///< its values: a JSON object, which is written as it is; empty: none
@@ -275,8 +277,10 @@ struct AutopilotMessage {
   std::string_view direction() const {
     return of_station ? "station" : to_controller ? "to" : "from";
   }
-  /// By the controller, whose link is signed.
-  bool is_refused() const {
+  /// By the controller, which did not act on it.
+  bool is_refused() const { return outcome == kIgnored || is_unsigned(); }
+  /// … whose link is signed.
+  bool is_unsigned() const {
     return outcome == "not_signed" || outcome == "wrong_signature" || outcome == "old_signature";
   }
   bool of_controller() const { return !to_controller && !of_station; }
@@ -287,7 +291,7 @@ struct AutopilotMessage {
   }
   /// Whether it is a command of what to fly now.
   bool is_setpoint() const {
-    return to_controller &&
+    return to_controller && outcome != kIgnored &&
            (name.starts_with("SET_POSITION_TARGET_") || name == "SET_ATTITUDE_TARGET");
   }
 };

@@ -99,12 +99,15 @@ struct Pace {
   /// Set-points that the program sent by MAVLink, one over the median time between two; 0: none.
   double setpoint_hz = 0.0;
   double setpoint_gap_s = 0.0;  ///< the longest time between two of them
-  /// Of all programs: how often a flight controller waited too long for the next set-point.
+  /// Of all programs, while they ran: how often a flight controller waited too long for the next
+  /// set-point, and did something else than to go on.
   struct Losses {
     std::size_t count = 0;
     SimTime first_at{};
-    std::string uav{}, action{};  ///< of the first one: what it does, "hover", "land", …
+    std::string uav{}, action{};  ///< of the first one: what it does, "hover", "brake" or "land"
     friend bool operator==(const Losses&, const Losses&) = default;
+    /// After the UAV's name: "had no new set-point for too long once, at ST 3.201 s, and …".
+    std::string text() const;
   } losses{};
 
   Speed speed{};             ///< of all programs of the run
