@@ -224,6 +224,18 @@ void check_companion(const record::Record& record, const Motion& motion, bool no
                     *last->clearance_m));
 }
 
+/// What the library inside a program as it is has found.
+void take_doubts(const record::Record& record, const SutResult& sut,
+                 std::vector<Warning>& warnings) {
+  for (const auto& logged : record.annotations) {
+    if (logged.message.uav != sut.uav || logged.message.topic != "as_is") continue;
+    const auto found = nlohmann::json::parse(logged.message.json, nullptr, false);
+    if (found.is_object() && found.contains("doubt") && found["doubt"].is_string())
+      warnings.push_back(
+          {Consequence::kDoubtful, {}, "UAV '" + sut.uav + "'", found["doubt"].get<std::string>()});
+  }
+}
+
 }  // namespace
 
 Warning doubt_about(const std::string& uav, const std::string& what) {
@@ -232,6 +244,7 @@ Warning doubt_about(const std::string& uav, const std::string& what) {
 
 std::string check_program(const record::Record& record, const record::SutInfo& info, SutResult& sut,
                           std::vector<Warning>& warnings) {
+  take_doubts(record, sut, warnings);
   const Motion motion = motion_of(record, info.uav);
   if (constexpr double kFalls_m_s = 2.0;
       sut.reached_goal && motion.last != nullptr && motion.last->clearance_m &&

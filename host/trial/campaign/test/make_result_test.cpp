@@ -83,6 +83,20 @@ TEST_F(MakeResult, AProgramThatHardlyDidAnythingAndDidNotMoveIsDoubtful) {
   EXPECT_TRUE(make(record, kReached).warnings.empty()) << "its goal may be to hover and look";
 }
 
+TEST_F(MakeResult, WhatIsNotKnownOfAProgramAsItIsIsDoubtful) {
+  record::Record record = finished_record();
+  for (int i = 0; i < 9; ++i) record.interactions.push_back(record.interactions.back());
+  record.annotations.push_back({});
+  record.annotations.back().message = {"uav1", {}, "as_is", R"({"doubt": "has another clock"})"};
+  record.annotations.push_back({});
+  record.annotations.back().message = {"uav1", {}, "as_is", R"({"doubt": 1})"};
+  record.annotations.push_back({});
+  record.annotations.back().message = {"uav1", {}, "other", R"({"doubt": "of its own"})"};
+  const TrialResult result = make(record, kReached);
+  ASSERT_EQ(result.warnings.size(), 1U);
+  EXPECT_EQ(to_line(result.warnings.front()), "UAV 'uav1' has another clock");
+}
+
 TEST_F(MakeResult, AProgramThatBeganNoTaskOfItsMissionIsDoubtful) {
   const auto file = scratch_.write("mission.toml", "[[task]]\ntask = \"search\"\n");
   scenario::Scenario scenario = scenario_;
