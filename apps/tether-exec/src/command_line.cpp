@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstdlib>
 #include <functional>
 #include <map>
 #include <stdexcept>
@@ -15,6 +16,7 @@
 
 #include <tether/base/version.h>
 #include <tether/client/simulated_vehicle.h>
+#include <tether/computer/clock.h>
 #include <tether/os/terminal.h>
 
 namespace tether::exec {
@@ -73,29 +75,30 @@ struct Row {
 
 std::vector<Row> rows_of(Parsed& parsed) {
   supervisor::Settings& settings = parsed.settings;
-  return {{{"--as-is",
-            "Fly a program that knows nothing of Tether: its clocks and waits follow its execution "
-            "time, and its UDP ports are those of the flight controller",
-            &parsed.is_as_is}},
-          {{"--all-processes",
-            "With --as-is: so do all processes that the program starts, which share one core of "
-            "this machine",
-            &parsed.has_all_processes}},
-          {{"--freezer auto|cgroup|signal",
-            "How to stop the program: cgroup (with a cgroup v2), signal (with SIGSTOP) or auto "
-            "(cgroup if the system allows it, otherwise signal) [auto]",
-            [&](const std::string& word) { set_freezer(settings, word); }},
-           "a value. Use auto, cgroup or signal"},
-          {{"--group SOCKET",
-            "Path of the group's socket, which the process with --members creates; the others wait "
-            "up to 10 seconds for it",
-            [&](const std::string& path) { settings.group = path; }},
-           "the path of a socket"},
-          {{"--members N",
-            "Number of programs in the group, from 1 to 1024; it begins when all have connected",
-            [&](const std::string& number) { set_members(settings, number); }},
-           "a number"},
-          {{"--verbose", "Report the cost of stopping at the end", &settings.verbose}}};
+  return {
+      {{"--as-is",
+        "Fly a program that knows nothing of Tether: its clocks and waits follow its execution "
+        "time, and its UDP ports are those of the flight controller",
+        &parsed.is_as_is}},
+      {{"--all-processes",
+        "With --as-is: so do all processes that the program starts. With the clock cpu, they share "
+        "one core of this machine; with the clock wall, they are stopped together",
+        &parsed.has_all_processes}},
+      {{"--freezer auto|cgroup|signal",
+        "How to stop the program: cgroup (with a cgroup v2), signal (with SIGSTOP) or auto "
+        "(cgroup if the system allows it, otherwise signal) [auto]",
+        [&](const std::string& word) { set_freezer(settings, word); }},
+       "a value. Use auto, cgroup or signal"},
+      {{"--group SOCKET",
+        "Path of the group's socket, which the process with --members creates; the others wait "
+        "up to 10 seconds for it",
+        [&](const std::string& path) { settings.group = path; }},
+       "the path of a socket"},
+      {{"--members N",
+        "Number of programs in the group, from 1 to 1024; it begins when all have connected",
+        [&](const std::string& number) { set_members(settings, number); }},
+       "a number"},
+      {{"--verbose", "Report the cost of stopping at the end", &settings.verbose}}};
 }
 
 /// For arguments that ask for a text, and run no program.
@@ -176,6 +179,12 @@ Parsed parse_command_line(const std::vector<std::string>& arguments) {
     wrong = "--as-is starts a program that nobody stops: use it without other options";
   if (!wrong.empty()) return wrong_use(wrong);
   return parsed;
+}
+
+bool is_wall_clock() {
+  const char* const text = std::getenv("TETHER_CLOCK");
+  const auto clock = computer::parse_clock(text == nullptr ? "wall" : text);
+  return clock && clock->kind == computer::ClockKind::kWall;
 }
 
 Status read_environment(supervisor::Settings& settings) {

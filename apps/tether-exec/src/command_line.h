@@ -23,6 +23,8 @@ struct Parsed {
 };
 /// @param arguments without the program's name.
 Parsed parse_command_line(const std::vector<std::string>& arguments);
+/// Whether TETHER_CLOCK is the wall clock, also with a factor.
+bool is_wall_clock();
 /// Adds the settings in TETHER_ADDRESS, TETHER_TOKEN, TETHER_UAV and TETHER_CLOCK. Fails with
 /// kInvalid.
 Status read_environment(supervisor::Settings& settings);

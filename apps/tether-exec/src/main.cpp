@@ -2,6 +2,7 @@
 #include "command_line.h"
 
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 
 #include <tether/supervisor/supervise.h>
@@ -20,9 +21,15 @@ int run(const std::vector<std::string>& arguments) {
     std::fputs(parsed.notice->text.c_str(), parsed.notice->exit_code == 0 ? stdout : stderr);
     return parsed.notice->exit_code;
   }
-  if (parsed.has_all_processes)
-    return supervisor::supervise_as_is(parsed.settings.command, library_as_is(), say);
-  if (parsed.is_as_is) {
+  // Inside another tether-exec, the program is stopped by that one.
+  const char* const outer = std::getenv("TETHER_EXEC");
+  const bool is_inside = outer != nullptr && *outer != 0;
+  if (parsed.has_all_processes && !is_inside) {
+    if (!is_wall_clock())
+      return supervisor::supervise_as_is(parsed.settings.command, library_as_is(), say);
+    static_cast<void>(library_as_is());  // or it says that it is missing
+    parsed.settings.command.insert(parsed.settings.command.begin(), {"/proc/self/exe", "--as-is"});
+  } else if (parsed.is_as_is) {
     say(become_as_is(parsed.settings.command));
     return 2;
   }

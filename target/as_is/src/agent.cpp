@@ -1,15 +1,14 @@
 #include "agent.h"
 
-#include "beside_source.h"
 #include "clocks.h"
 #include "nmea.h"
 #include "real.h"
+#include "signals.h"
 
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <set>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -35,14 +34,8 @@ constexpr Duration kLongestUnwoken = std::chrono::milliseconds(1);
 constexpr Duration kLongestToldSlice = std::chrono::milliseconds(200);
 // A thread that waits beside one that computes looks so often for what has arrived [ET].
 constexpr Duration kBetweenLooks = std::chrono::milliseconds(2);
-// After so long it is told that nothing was used [ET].
-constexpr Duration kIdle = std::chrono::seconds(10);
 // Of a wait without a deadline; then it begins again.
 constexpr Duration kForEver = std::chrono::hours(1);
-
-void say(const std::string& line) {
-  std::fprintf(stderr, "tether: %s\n", line.c_str());
-}
 
 /// The eventfd that wakes the calling thread, with nothing in it.
 int wake_of_thread() {
@@ -61,99 +54,26 @@ std::optional<ExecTime> earlier_of(std::optional<ExecTime> a, std::optional<Exec
   return a && b ? std::min(a, b) : a ? a : b;
 }
 
-/// The program's own name: the last part of its path.
-std::string program_name() {
-  char path[4096];
-  const ssize_t size = ::readlink("/proc/self/exe", path, sizeof path - 1);
-  const std::string whole(path, size > 0 ? static_cast<std::size_t>(size) : 0);
-  return whole.substr(whole.rfind('/') + 1);
-}
-
 }  // namespace
 
-thread_local int Inside::depth_ = 0;
 thread_local Unpaid* Unpaid::current_ = nullptr;
 std::atomic<Agent*> Agent::instance_ = nullptr;
-
-Agent::Agent(std::unique_ptr<GroupMember> group)
-    : group_(std::move(group)),
-      group_source_(client::make_group_source(group_->page(), 1.0)),
-      source_(group_source_.get()),
-      factor_(1.0),
-      process_(::getpid()) {
-  Unpaid::clock_stands_in_calls = false;
-}
-
-void Agent::start_in_group() {
-  if (auto member = GroupMember::of_environment())
-    instance_.store(new Agent(std::move(member)), std::memory_order_release);
-}
-
-void Agent::leave() {
-  const Inside inside;
-  const Agent* const parent = instance_.exchange(nullptr);
-  if (parent == nullptr || !parent->group_) return;
-  if (auto member = GroupMember::of_child(*parent->group_))
-    instance_.store(new Agent(std::move(member)), std::memory_order_release);
-}
-
-client::Vehicle& Agent::vehicle() {
-  if (group_)
-    std::call_once(connects_, [this] {
-      client::ConnectOptions options;
-      options.exec_socket = group_->socket();
-      options.sut_name = program_name();
-      auto vehicle = client::connect(std::move(options));
-      if (!vehicle) end(vehicle.failure());
-      vehicle_ = std::move(*vehicle);
-      add_sensors();
-    });
-  return *vehicle_;
-}
-
-void Agent::start() {
-  const Inside inside;
-  if (const char* kind = std::getenv("TETHER_AS_IS"); kind && std::string_view(kind) == "group")
-    return start_in_group();
-  auto options = client::options_from_environment();
-  if (!options) return say(options.failure().message + "; the program runs by itself");
-  options->sut_name = program_name();
-  if (options->time) options->time = charge_beside_calls(std::move(options->time));
-  client::TimeSource* const source = options->time.get();
-  auto vehicle = client::connect(std::move(*options));
-  if (!vehicle) {
-    say(vehicle.failure().message);
-    ::_exit(3);
-  }
-  auto* const agent = new Agent(std::move(*vehicle), *source);
-  agent->process_ = ::getpid();
-  instance_.store(agent, std::memory_order_release);
-}
+std::atomic<bool> Agent::finishes_ = false;
 
 // The run is over, or cannot go on: so is the program. It says nothing that the coordinator does
 // not know.
 void Agent::end(const Failure& failure) {
+  while (finishes_) ::pause();  // another thread ends the process, with what it has to write
   if (failure.kind != Failure::Kind::kRunEnded) say(failure.message);
   instance_.store(nullptr);
   TETHER_REAL(_exit)(failure.kind == Failure::Kind::kRunEnded ? 0 : 3);
   std::abort();
 }
 
-// A program that uses some of it is right: it need not use all.
-void Agent::tell_if_idle() {
-  if (is_known_to_be_used_) return;
-  is_known_to_be_used_ = is_fed();
-  if (is_known_to_be_used_ || now() < ExecTime(kIdle)) return;
-  is_known_to_be_used_ = true;
-  say("for 10 s the program has used nothing of the UAV: no UDP port of a companion (14540, "
-      "14550), "
-      "no serial port, and none of its cameras, of which it has " +
-      std::to_string(cameras_.cameras().size()));
-}
-
 // Cameras that find no buffer for an image do not wake anybody.
 bool Agent::receive_until(std::optional<ExecTime> until) {
   tell_if_idle();
+  tell_if_beside();
   std::vector<std::string_view> sensors;
   for (const Camera& camera : cameras_.cameras())
     if (camera.has_room()) sensors.push_back(camera.sensor());
@@ -177,13 +97,18 @@ void Agent::take_measured() {
     if (fix.failure().kind != Failure::Kind::kNothingYet) end(fix.failure());
     return;
   }
-  const Duration at_utc = at_start(CLOCK_REALTIME) + (fix->sampled_at - SimTime{});
-  const std::string text = nmea_of(*fix, at_utc);
+  deliver(*fix);
+}
+
+void Agent::deliver(const uav::NavSatSample& fix) {
+  const Duration at_utc = at_start(CLOCK_REALTIME) + (fix.sampled_at - SimTime{});
+  const std::string text = nmea_of(fix, at_utc);
   port_.deliver_of_receiver({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
 }
 
 // For all processes; this one hears of it on its line before the call returns.
 void Agent::take_arrived() {
+  if (is_stopped_) return hear_devices();
   if (group_) {
     tell_needs();
     group_->listen([this](auto event, const auto& reply) { handle(event, reply); });
@@ -206,6 +131,7 @@ void Agent::add_sensors() {
       receiver_bit_ = std::uint64_t{1} << (&sensor - vehicle_->catalogue().sensors.data());
     const auto kind = sensor.camera_kind();
     if (!kind || !uav::has_color(*kind) || sensor.rate_hz <= 0.0) continue;
+    hears_cameras_.try_emplace(sensor.name);
     cameras_.add(sensor, {.take = [this, name = sensor.name] { return take_image(name); },
                           .drop = [this, name = sensor.name](bool keeps) { drop(name, keeps); },
                           .now = [this] { return now(); }});
@@ -213,6 +139,7 @@ void Agent::add_sensors() {
 }
 
 std::optional<uav::CameraSample> Agent::take_image(const std::string& sensor) {
+  if (is_stopped_) return std::exchange(arrived_, std::nullopt);
   auto image = Unpaid::in_call(
       [&] { return vehicle_->read<uav::CameraSample>(sensor, client::Read::kIfAvailable); });
   if (image) return std::move(*image);
@@ -222,6 +149,7 @@ std::optional<uav::CameraSample> Agent::take_image(const std::string& sensor) {
 
 // A driver keeps the oldest images, a queue the newest ones: so it has to be long.
 void Agent::drop(const std::string& sensor, bool keeps_later_ones) {
+  if (is_stopped_) return streams_change_.notify_all();
   static_cast<void>(vehicle_->set_queue(sensor, keeps_later_ones ? link::kMaxQueue : 1));
   const Status skipped = Unpaid::in_call([&] { return vehicle_->skip(sensor); });
   if (!skipped) end(skipped.failure());
@@ -291,7 +219,7 @@ bool Agent::lead() {
   bool is_empty = true;
   {
     const std::lock_guard lock(waits_mutex_);
-    is_empty = waits_.empty();
+    is_empty = waits_.empty() && !earliest;
     for (const auto& [deadline, wake, interrupt, shared] : waits_)
       if (deadline) earliest = std::min(earliest.value_or(*deadline), *deadline);
   }
@@ -320,11 +248,13 @@ std::list<Agent::Wait>::iterator Agent::enter(std::optional<ExecTime> deadline,
     tell_needs();
     if (deadline) wait.shared = group_->page().begin_wait(process_, *deadline);
   }
+  if (is_stopped_) hear_devices();
   const std::lock_guard lock(waits_mutex_);
   return waits_.insert(waits_.end(), std::move(wait));
 }
 
 void Agent::tell_needs() {
+  if (is_stopped_ ? timers_.next().has_value() : !group_ && timers_.have_events()) call_leader();
   if (!group_) return;
   client::GroupPage::Process& process = group_->process();
   process.timer = timers_.next().value_or(client::GroupPage::kNever);
@@ -364,52 +294,69 @@ void Agent::leave(std::list<Wait>::iterator wait) {
 }
 
 // With several threads, the leader's thread looks from time to time whether all wait.
-bool Agent::wait(std::optional<ExecTime> deadline, const std::function<bool()>& is_ready,
-                 const Block& block) {
+Agent::End Agent::wait(std::optional<ExecTime> deadline, const std::function<bool()>& is_ready,
+                       const Block& block) {
   const Unpaid unpaid(*source_);
+  const unsigned handled = Signals::count();
   const auto own = enter(deadline);
   const bool is_alone = !Threads::are_several();
   Patience patience{.seen = now()};
   // What others compute during a call is charged with a CPU clock only.
   const bool hears = !is_alone && source_->clock().kind == computer::ClockKind::kCpu;
   ExecTime heard_at = patience.seen;
-  bool ready = false;
+  End end = End::kReady;
   bool leads = true;
+  const auto block_openly = [&](Duration slice) {
+    const Signals::Open open;
+    block(slice, own->wake);
+  };
   for (;;) {
     fire_timers();
-    if ((ready = is_ready()) || (deadline && now() >= *deadline)) break;
+    if (is_ready()) break;
+    if (deadline && now() >= *deadline) end = End::kDeadline;
+    if (end == End::kReady && Signals::have_run_since(handled)) end = End::kHandler;
+    if (end != End::kReady) break;
     Unpaid::settle();
     if (group_) {
-      block(kLongestToldSlice, own->wake);
+      block_openly(kLongestToldSlice);
+      continue;
+    }
+    if (is_stopped_) {
+      block_openly(real_until(earlier_of(deadline, timers_.next())));
       continue;
     }
     if (leads && lead()) continue;
     if (leads && !is_alone) call_leader();
     leads = is_alone;
-    block(slice(earlier_of(deadline, timers_.next()), patience), own->wake);
+    block_openly(slice(earlier_of(deadline, timers_.next()), patience));
     if (hears && is_fed() && now() - heard_at >= kBetweenLooks) {
       take_arrived();
       heard_at = now();
     }
   }
   leave(own);
-  return ready;
+  return end;
 }
 
-bool Agent::wait_for_thread(ExecTime deadline, const std::function<bool(Duration)>& block,
+bool Agent::wait_for_thread(ExecTime deadline, const std::function<bool(Duration)>& wait_openly,
                             const std::function<void()>& interrupt) {
   const Unpaid unpaid(*source_);
+  const auto block = [&](Duration slice) {
+    const Signals::Open open;
+    return wait_openly(slice);
+  };
   // Of a group, a thread must not be found waiting, however shortly, before its deadline is known.
   if (!group_ && block(Duration(0))) return true;
   const auto own = enter(deadline, interrupt);
-  if (!group_) call_leader();
+  if (!group_ && !is_stopped_) call_leader();
   Patience patience{.seen = now()};
   bool is_given = group_ && block(Duration(0));
   while (!is_given && now() < deadline) {
     Unpaid::settle();
     // Alone, nobody can wake it at its deadline.
-    is_given =
-        block(group_ ? kLongestToldSlice : std::min(kLongestUnwoken, slice(deadline, patience)));
+    is_given = block(group_        ? kLongestToldSlice
+                     : is_stopped_ ? real_until(deadline)
+                                   : std::min(kLongestUnwoken, slice(deadline, patience)));
   }
   leave(own);
   return is_given;
@@ -419,6 +366,7 @@ void Agent::call_leader() {
   constexpr std::uint64_t kOnce = 1;
   std::call_once(leader_begins_, [this] {
     leader_wake_ = ::eventfd(0, EFD_CLOEXEC);
+    Threads::began();  // from now on, the program is not alone with its time
     std::thread([this] { lead_for_others(); }).detach();
   });
   static_cast<void>(TETHER_REAL(write)(leader_wake_, &kOnce, sizeof kOnce));
@@ -433,13 +381,20 @@ void Agent::lead_for_others() {
     bool is_any = false;
     {
       const std::lock_guard lock(waits_mutex_);
-      is_any = !waits_.empty();
+      is_any = !waits_.empty() || timers_.next();
     }
     const Unpaid unpaid(*source_);
-    if (lead()) {
+    if (!is_stopped_ && lead()) {
       patience = {};
       continue;
     }
+    if (fire_timers()) {
+      patience = {};
+      continue;
+    }
+    if (is_stopped_) is_any = timers_.next().has_value();
+    if (const auto next = timers_.next())
+      patience.slice = std::max(kShortestSlice, std::min(patience.slice, real_until(next)));
     pollfd fd{leader_wake_, POLLIN, 0};
     const timespec time = to_timespec(patience.slice);
     Unpaid::settle();
@@ -456,38 +411,23 @@ bool Agent::is_here() const {
   return ::getpid() == process_;
 }
 
-void Agent::sleep_until(ExecTime deadline) {
-  wait(
+bool Agent::sleep_until(ExecTime deadline) {
+  const End end = wait(
       deadline, [] { return false; },
       [](Duration slice, int wake) {
         pollfd fd{wake, POLLIN, 0};
         const timespec time{0, static_cast<long>(slice.count())};
         TETHER_REAL(ppoll)(&fd, 1, &time, nullptr);
       });
-}
-
-bool Agent::tell(const std::string& line) {
-  static std::mutex mutex;
-  static std::set<std::string> told;
-  const std::lock_guard lock(mutex);
-  const bool is_new = told.insert(line).second;
-  if (is_new) say(line);
-  return is_new;
-}
-
-void Agent::tell_gap(const char* what) {
-  if (!tell(std::string("the program uses ") + what +
-            ", which follows the machine's clock: its time is not that of the run"))
-    return;
-  const std::lock_guard leading(leading_);
-  static_cast<void>(
-      vehicle().annotate("as_is", std::string("{\"not_covered\": \"") + what + "\"}"));
+  return end != End::kHandler;
 }
 
 void Agent::finish(int exit_code) {
+  finishes_ = true;
   if (instance_.exchange(nullptr) == nullptr) return;
   // What it has computed is known from now on, however it ends.
   if (group_) return static_cast<void>(group_->page().used());
+  if (is_stopped_ && !is_first()) return;
   const std::lock_guard leading(leading_);
   static_cast<void>(vehicle_->finish(
       exit_code == 0, "the program ended with exit code " + std::to_string(exit_code), "{}"));

@@ -9,6 +9,7 @@
 #include "unpaid.h"
 
 #include <atomic>
+#include <condition_variable>
 #include <functional>
 #include <list>
 #include <map>
@@ -18,12 +19,18 @@
 #include <string>
 #include <vector>
 
+#include <sys/socket.h>
 #include <sys/types.h>
 
 #include <tether/base/time.h>
 #include <tether/client/simulated_vehicle.h>
 
 namespace tether::as_is {
+
+/// To the user, on standard error.
+void say(const std::string& line);
+/// The last part of the path of this process's program.
+std::string program_name();
 
 /// The program's side of the run: its clock is ET, and its waits are interactions
 /// (docs/guide/as-is.md). One for each process that is under test. Its functions are called by
@@ -35,6 +42,10 @@ namespace tether::as_is {
 /// hear that one all the time; a thread of this library does it for them. The messages are put into
 /// the program's own sockets, and what its timers count into its own descriptors, so that the
 /// kernel wakes whoever waits for them.
+///
+/// Under tether-exec with the wall clock, the program is *stopped* while the simulation catches up
+/// (ADR 0096). Then nobody leads: waits take real time, and what arrives is heard by threads of
+/// this library, one for each device that the program uses.
 ///
 /// Thread-safe.
 class Agent {
@@ -56,25 +67,28 @@ class Agent {
   /// process of the program.
   static void leave();
 
-  ExecTime now() const { return group_ ? group_->page().now() : vehicle_->now(); }
+  ExecTime now() const { return group_ ? group_->page().now() : clock_->now(); }
   /// Of a group: there will be one more thread of the program. nullptr: nobody has to know.
   client::GroupPage::Thread* thread_begins() const {
     return group_ ? group_->page().begin_thread(process_, client::GroupPage::kBegins) : nullptr;
   }
-  /// Whether the program's processes share one execution time.
+  /// Whether the program's processes share one execution time, and jump over their waits together.
   bool is_in_group() const { return group_ != nullptr; }
+  /// Whether it is stopped while the simulation catches up.
+  bool is_stopped() const { return is_stopped_; }
 
   /// Waits until `is_ready`, or the deadline (none: for ever). `block` waits for the same in real
-  /// time, for at most so long, and if it can until the descriptor can be read. False: the deadline
-  /// came first.
+  /// time, for at most so long, and if it can until the descriptor can be read.
   using Block = std::function<void(Duration slice, int wake)>;
-  bool wait(std::optional<ExecTime> deadline, const std::function<bool()>& is_ready,
-            const Block& block);
+  enum class End { kReady, kDeadline, kHandler };  // a handler of a signal has run
+  End wait(std::optional<ExecTime> deadline, const std::function<bool()>& is_ready,
+           const Block& block);
   /// The same for what another thread of the program gives; `block` returns whether it has.
   /// `interrupt` ends `block`, or does nothing if it has not begun.
   bool wait_for_thread(ExecTime deadline, const std::function<bool(Duration)>& block,
                        const std::function<void()>& interrupt);
-  void sleep_until(ExecTime deadline);
+  /// False: a handler of a signal has run.
+  bool sleep_until(ExecTime deadline);
   /// Puts what has arrived up to now into the program's sockets.
   void take_arrived();
 
@@ -121,25 +135,42 @@ class Agent {
   void forget(int fd);
   void copy(int fd, int copy);
 
-  /// The program uses something that this library does not bring to ET: says so, once for each.
+  /// The program uses something that this library does not bring to ET: says so, once for each, and
+  /// the answer does.
   void tell_gap(const char* what);
+  /// It talks to another computer, which has the real time.
+  void tell_outside(const sockaddr* address);
   /// Says something, once. False: it was said before.
   static bool tell(const std::string& line);
 
   /// Whether the caller is in this process, and not in a child that shares its memory (vfork).
   bool is_here() const;
+  /// Of a program that is stopped: whether this process is the one that tether-exec started.
+  bool is_first() const;
   /// The program ends with this code.
   void finish(int exit_code);
 
  private:
   Agent(std::unique_ptr<client::Vehicle> vehicle, client::TimeSource& source)
-      : vehicle_(std::move(vehicle)), source_(&source), factor_(source.clock().factor) {
+      : vehicle_(std::move(vehicle)),
+        source_(&source),
+        factor_(source.clock().factor),
+        clock_(vehicle_.get()) {
     add_sensors();
   }
   explicit Agent(std::unique_ptr<GroupMember> group);
+  /// One that is stopped. `clock`: of the process that forked this one; nullptr: it has its own.
+  explicit Agent(const client::Vehicle* clock);
   static void start_in_group();
-  /// Of a group, connected when it is used first.
+  /// Of several processes, connected when it is used first.
   client::Vehicle& vehicle();
+  Result<std::unique_ptr<client::Vehicle>> connect_to_exec() const;
+  /// Of one that is stopped: hears what arrives at the devices that the program has opened.
+  void hear_devices();
+  template <class Hear>
+  void hear(std::once_flag& begins, Hear hear);
+  void hear_camera(Camera& camera);
+  Duration real_until(std::optional<ExecTime> until) const;
   void handle(client::GroupEvent event, const link::Reply& reply);
   void tell_rooms();
   struct ToldNeeds {
@@ -152,10 +183,13 @@ class Agent {
   /// Takes the next message, or lets ET reach that instant.
   bool receive_until(std::optional<ExecTime> until);
   void tell_if_idle();
+  void tell_if_beside();
+  void doubt(const std::string& text);
   struct Patience;
   bool lead();
   void add_sensors();
   void take_measured();
+  void deliver(const uav::NavSatSample& fix);
   std::optional<uav::CameraSample> take_image(const std::string& sensor);
   void drop(const std::string& sensor, bool keeps_later_ones);
   [[noreturn]] void lead_for_others();
@@ -168,20 +202,21 @@ class Agent {
   [[noreturn]] static void end(const Failure& failure);
 
   static std::atomic<Agent*> instance_;
+  static std::atomic<bool> finishes_;
 
-  std::unique_ptr<GroupMember> group_;  // none: the program has one process
-  std::unique_ptr<client::TimeSource> group_source_;
+  std::unique_ptr<GroupMember> group_;              // none: the program has one process
+  std::unique_ptr<client::TimeSource> own_source_;  // of the two below
   std::once_flag connects_;
   // Bits of sensors: cameras that have room, and the receiver.
   std::atomic<std::uint64_t> rooms_{0}, receiver_bit_{0};
   std::unique_ptr<client::Vehicle> vehicle_;
   client::TimeSource* source_;  // of the vehicle, or the group
   double factor_;               // ET per CPU time, or wall time
-  bool is_known_to_be_used_ = false;
+  bool is_known_to_be_used_ = false, is_known_to_be_beside_ = false;
   Port port_;
   CameraFiles cameras_;     // with leading_
   std::string receiver_{};  // the sensor; empty: none
-  Timers timers_;
+  Timers timers_{start_thread};
   std::mutex stream_mutex_;
   std::map<int, FrameStream> streams_;
   Threads threads_;
@@ -191,6 +226,12 @@ class Agent {
   std::once_flag leader_begins_;
   int leader_wake_ = -1;  // an eventfd: somebody begins to wait
   pid_t process_ = 0;
+  bool is_stopped_ = false;
+  const client::Vehicle* clock_ = nullptr;
+  std::once_flag hears_controller_, hears_receiver_;
+  std::map<std::string, std::once_flag> hears_cameras_;
+  std::condition_variable streams_change_;      // with leading_
+  std::optional<uav::CameraSample> arrived_{};  // with leading_
 };
 
 }  // namespace tether::as_is

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <ctime>
+#include <optional>
 #include <utility>
 
 namespace tether::as_is {
@@ -48,10 +50,46 @@ class BesideSource final : public client::TimeSource {
   mutable Duration at_hold_{0};
 };
 
+std::atomic<Duration> g_beside_calls{Duration(0)};
+
+Duration of_other_threads() {
+  const auto used = [](clockid_t clock) {
+    timespec time{};
+    ::clock_gettime(clock, &time);
+    return std::chrono::seconds(time.tv_sec) + Duration(time.tv_nsec);
+  };
+  return used(CLOCK_PROCESS_CPUTIME_ID) - used(CLOCK_THREAD_CPUTIME_ID);
+}
+
+// The same of a wall clock, for which nothing is charged: it is only known.
+class WatchedSource final : public client::TimeSource {
+ public:
+  explicit WatchedSource(std::unique_ptr<client::TimeSource> source) : source_(std::move(source)) {}
+
+  computer::Clock clock() const override { return source_->clock(); }
+  Duration elapsed() const override { return source_->elapsed(); }
+  void hold() const override { at_hold_ = of_other_threads(); }
+  Duration elapsed_at_resume() const override {
+    if (const auto since = std::exchange(at_hold_, std::nullopt))
+      g_beside_calls = g_beside_calls.load() + std::max(Duration(0), of_other_threads() - *since);
+    return source_->elapsed_at_resume();
+  }
+
+ private:
+  std::unique_ptr<client::TimeSource> source_;
+  mutable std::optional<Duration> at_hold_;  // guarded by SutClock's user
+};
+
 }  // namespace
+
+Duration computed_beside_calls() {
+  return g_beside_calls;
+}
 
 std::unique_ptr<client::TimeSource> charge_beside_calls(
     std::unique_ptr<client::TimeSource> source) {
+  if (source->clock().kind == computer::ClockKind::kWall)
+    return std::make_unique<WatchedSource>(std::move(source));
   if (source->clock().kind != computer::ClockKind::kCpu) return source;
   return std::make_unique<BesideSource>(std::move(source));
 }

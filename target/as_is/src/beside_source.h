@@ -11,4 +11,7 @@ namespace tether::as_is {
 /// calls. Others are returned as they are.
 std::unique_ptr<client::TimeSource> charge_beside_calls(std::unique_ptr<client::TimeSource> source);
 
+/// With a wall clock, which stands during calls: what other threads have computed during them.
+Duration computed_beside_calls();
+
 }  // namespace tether::as_is

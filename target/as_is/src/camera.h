@@ -53,6 +53,7 @@ class Camera {
   int answer(const Opener& by, unsigned long request, void* argument);
   void close(const Opener& by);
 
+  bool is_streaming() const { return is_streaming_; }
   /// Whether an image that arrives now is taken.
   bool has_room() const { return is_streaming_ && !queued_.empty(); }
   void take_arrived();

@@ -6,6 +6,8 @@
 #include <cerrno>
 #include <optional>
 
+#include <pthread.h>
+
 /// What the functions in place of the C library's have in common.
 #define TETHER_IN_PLACE extern "C" __attribute__((visibility("default")))
 
@@ -28,6 +30,10 @@ class KeepErrno {
 inline Agent* agent() {
   return Inside::is() ? nullptr : Agent::get();
 }
+
+/// Ends what the thread waits for in a system call, by a signal that programs do not use. One that
+/// blocks it is late by a slice.
+void interrupt_thread(pthread_t thread);
 
 /// What a system call for a device comes to, −1 with errno; none: it is for something else.
 std::optional<long> device_call(long number, const long (&arguments)[6]);

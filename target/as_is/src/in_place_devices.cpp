@@ -12,6 +12,7 @@
 #include <cstring>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include <fcntl.h>
 #include <linux/videodev2.h>
@@ -61,8 +62,25 @@ std::optional<Port::Line> line_at(const char* path) {
   return std::nullopt;
 }
 
+bool is_uptime(const char* path) {
+  return path != nullptr && std::string_view(path) == "/proc/uptime" && agent() != nullptr;
+}
+
+/// As it is now: programs open it for each look.
+int open_uptime() {
+  const Inside inside;
+  const timespec up = shown(CLOCK_BOOTTIME, Agent::get()->now());
+  const int file = ::memfd_create("uptime", MFD_CLOEXEC);
+  constexpr long kNsPerHundredth = 10'000'000;
+  if (file >= 0)
+    ::dprintf(file, "%ld.%02ld 0.00\n", static_cast<long>(up.tv_sec), up.tv_nsec / kNsPerHundredth);
+  if (file >= 0) ::lseek(file, 0, SEEK_SET);
+  return file;
+}
+
 /// A descriptor of the device, −1 with errno; none: the path is another file's.
 std::optional<int> open_device(const char* path, int flags) {
+  if (is_uptime(path)) return open_uptime();
   if (const auto number = camera_at(path)) return open_camera(*number, flags);
   const auto line = line_at(path);
   if (!line) return std::nullopt;
@@ -119,13 +137,14 @@ int dequeue(Agent& agent, int fd, void* argument) {
     agent.take_arrived();
     return answer();
   }
-  agent.wait(
+  const auto end = agent.wait(
       std::nullopt, [&] { return (result = answer()) != EAGAIN; },
       [fd](Duration slice, int wake) {
         pollfd fds[] = {{fd, POLLIN, 0}, {wake, POLLIN, 0}};
         const timespec time = to_timespec(slice);
         TETHER_REAL(ppoll)(fds, 2, &time, nullptr);
       });
+  if (end == Agent::End::kHandler) return EINTR;
   return result;
 }
 
@@ -268,6 +287,7 @@ TETHER_IN_PLACE void* mmap64(void* at, size_t size, int protection, int flags, i
 // v4l2-ctl looks there for what kind of device it is.
 TETHER_IN_PLACE FILE* fopen(const char* __restrict path, const char* __restrict mode) {
   unsigned number = 0;
+  if (is_uptime(path)) return ::fdopen(open_uptime(), mode);
   if (agent() == nullptr || std::sscanf(path, "/sys/dev/char/81:%u/uevent", &number) != 1 ||
       !Agent::get()->has_camera(number))
     return TETHER_REAL(fopen)(path, mode);

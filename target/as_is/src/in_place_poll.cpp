@@ -36,8 +36,12 @@ int wait_for(Agent& agent, std::optional<Duration> timeout, Look look, const Age
     if (agent.is_fed()) agent.take_arrived();
     result = look();
   } else if (result == 0) {
-    agent.wait(
+    const auto end = agent.wait(
         deadline_of(agent, timeout), [&] { return (result = look()) != 0; }, block);
+    if (end == Agent::End::kHandler) {
+      errno = EINTR;
+      return -1;
+    }
   }
   if (result >= 0) errno = kept;
   return result;

@@ -2,6 +2,7 @@
 
 #include "clocks.h"
 #include "in_place.h"
+#include "signals.h"
 
 #include <cerrno>
 #include <cstdarg>
@@ -33,7 +34,7 @@ Agent* reader_of(int socket) {
   if (agent == nullptr || agent->port().is_ours(socket)) return agent;
   timeval limit{};
   socklen_t size = sizeof limit;
-  const bool has_timeout = agent->is_in_group() &&
+  const bool has_timeout = (agent->is_in_group() || agent->is_stopped()) &&
                            ::getsockopt(socket, SOL_SOCKET, SO_RCVTIMEO, &limit, &size) == 0 &&
                            (limit.tv_sec > 0 || limit.tv_usec > 0);
   return has_timeout ? agent : nullptr;
@@ -73,19 +74,25 @@ ssize_t read_when_ready(Agent& agent, int socket, int flags, Take take) {
   bool is_timed_out = true;
   int error = 0;
   const auto deadline = timeout ? std::optional(agent.now() + *timeout) : std::nullopt;
-  agent.wait(
-      deadline,
-      [&] {
-        result = take();
-        error = errno;
-        is_timed_out = is_empty();
-        return !is_timed_out;
-      },
-      [&](Duration slice, int wake) {
-        pollfd fds[] = {{socket, POLLIN, 0}, {wake, POLLIN, 0}};
-        const timespec time = to_timespec(slice);
-        TETHER_REAL(ppoll)(fds, 2, &time, nullptr);
-      });
+  // After a handler, most go on to read.
+  while (agent.wait(
+             deadline,
+             [&] {
+               result = take();
+               error = errno;
+               is_timed_out = is_empty();
+               return !is_timed_out;
+             },
+             [&](Duration slice, int wake) {
+               pollfd fds[] = {{socket, POLLIN, 0}, {wake, POLLIN, 0}};
+               const timespec time = to_timespec(slice);
+               TETHER_REAL(ppoll)(fds, 2, &time, nullptr);
+             }) == Agent::End::kHandler) {
+    if (!timeout && Signals::restarts()) continue;
+    error = EINTR;
+    is_timed_out = false;
+    break;
+  }
   // After a wait, errno is that of anything.
   errno = result < 0 && is_timed_out ? EAGAIN : result < 0 ? error : kept;
   return result;
@@ -118,8 +125,8 @@ ssize_t send_bytes(Agent& agent, int socket, const void* bytes, std::size_t size
 
 /// Whether a call may wait for another computer or program: then the caller is outside meanwhile.
 bool is_outside(int socket) {
-  // Of a group, nobody outside is known.
-  if (agent() == nullptr || agent()->is_in_group()) return false;
+  // Of a group, nobody outside is known; of a program that is stopped, it does not matter.
+  if (agent() == nullptr || agent()->is_in_group() || agent()->is_stopped()) return false;
   int family = 0;
   socklen_t size = sizeof family;
   return ::getsockopt(socket, SOL_SOCKET, SO_DOMAIN, &family, &size) == 0 &&
@@ -130,6 +137,17 @@ auto call_outside(int socket, Call call) {
   if (!is_outside(socket)) return call();
   const Threads::Outside outside;
   return call();
+}
+
+/// A connection to another computer is for what comes from there.
+void tell_outside(int socket, const sockaddr* address) {
+  Agent* const agent = tether::as_is::agent();
+  int type = 0;
+  socklen_t size = sizeof type;
+  if (agent == nullptr || ::getsockopt(socket, SOL_SOCKET, SO_TYPE, &type, &size) != 0) return;
+  const KeepErrno keep;
+  const Inside inside;
+  if (type == SOCK_STREAM) agent->tell_outside(address);
 }
 
 /// What is sent on a connection goes out at once: the kernel would hold small packets back by its
@@ -208,6 +226,7 @@ TETHER_IN_PLACE int connect(int socket, const sockaddr* address, socklen_t size)
   }
   Agent* const agent = agent_for(socket, address, size);
   if (agent == nullptr || address == nullptr) {
+    tell_outside(socket, address);
     send_at_once(socket);
     return call_outside(socket, [&] { return TETHER_REAL(connect)(socket, address, size); });
   }

@@ -52,18 +52,6 @@ void* begin(void* argument) {
   return copy.function(copy.argument);
 }
 
-// A signal that programs do not use. One that blocks it is late by a slice.
-void interrupt_thread(pthread_t thread) {
-  static const int kSignal = [] {
-    const int signal = SIGRTMAX - 4;
-    struct sigaction action {};
-    action.sa_handler = [](int) {};
-    ::sigaction(signal, &action, nullptr);
-    return signal;
-  }();
-  ::pthread_kill(thread, kSignal);
-}
-
 /// `take(slice)`: the real wait, for so long in real time; ETIMEDOUT: not yet.
 /// `condition`: what it waits for; nullptr: a call that a signal interrupts.
 template <class Take>
@@ -142,6 +130,43 @@ bool is_timed_wait(long operation) {
 }
 
 }  // namespace
+
+void interrupt_thread(pthread_t thread) {
+  static const int kSignal = [] {
+    const int signal = SIGRTMAX - 4;
+    struct sigaction action {};
+    action.sa_handler = [](int) {};
+    ::sigaction(signal, &action, nullptr);
+    return signal;
+  }();
+  ::pthread_kill(thread, kSignal);
+}
+
+void start_thread(const sigevent& event) {
+  struct Call {
+    void (*function)(sigval);
+    sigval value;
+  };
+  auto* const call = new Call{event.sigev_notify_function, event.sigev_value};
+  const auto run = [](void* argument) -> void* {
+    const std::unique_ptr<Call> own(static_cast<Call*>(argument));
+    own->function(own->value);
+    return nullptr;
+  };
+  Agent* const agent = Agent::get();
+  auto given = std::make_unique<Begin>(Begin{run, call, false});
+  if (agent != nullptr) given->shared = agent->thread_begins();
+  Threads::began();
+  pthread_t thread{};
+  if (TETHER_REAL(pthread_create)(&thread, event.sigev_notify_attributes, begin, given.get()) !=
+      0) {
+    client::GroupPage::end_thread(given->shared);
+    return Threads::ended();
+  }
+  static_cast<void>(given.release());
+  ::pthread_detach(thread);
+}
+
 }  // namespace tether::as_is
 
 using namespace tether::as_is;
@@ -154,7 +179,12 @@ TETHER_IN_PLACE int pthread_create(pthread_t* __restrict thread,
   Agent* const agent = tether::as_is::agent();
   if (agent != nullptr) given->shared = agent->thread_begins();
   if (!is_inside) Threads::began();
+  // Signals are the program's: its own threads have to take them.
+  sigset_t all, before;
+  ::sigfillset(&all);
+  if (is_inside) ::pthread_sigmask(SIG_SETMASK, &all, &before);
   const int result = TETHER_REAL(pthread_create)(thread, attributes, begin, given.get());
+  if (is_inside) ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
   if (result == 0)
     static_cast<void>(given.release());
   else if (!is_inside) {

@@ -3,6 +3,7 @@
 #include "clocks.h"
 #include "in_place.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 
@@ -13,13 +14,15 @@
 namespace tether::as_is {
 namespace {
 
-int sleep_for(Agent& agent, const timespec* duration) {
+int sleep_for(Agent& agent, const timespec* duration, timespec* left) {
   const auto wanted = duration_of(*duration);
   if (!wanted) return EINVAL;
   const Inside inside;
   const KeepErrno keep;
-  agent.sleep_until(agent.now() + *wanted);
-  return 0;
+  const tether::ExecTime until = agent.now() + *wanted;
+  if (agent.sleep_until(until)) return 0;
+  if (left != nullptr) *left = to_timespec(std::max(until - agent.now(), Duration(0)));
+  return EINTR;
 }
 
 }  // namespace
@@ -59,7 +62,7 @@ TETHER_IN_PLACE time_t time(time_t* out) {
 TETHER_IN_PLACE int nanosleep(const timespec* duration, timespec* left) {
   Agent* const agent = tether::as_is::agent();
   if (agent == nullptr) return TETHER_REAL(nanosleep)(duration, left);
-  const int wrong = sleep_for(*agent, duration);
+  const int wrong = sleep_for(*agent, duration, left);
   if (wrong == 0) return 0;
   errno = wrong;
   return -1;
@@ -70,12 +73,11 @@ TETHER_IN_PLACE int clock_nanosleep(clockid_t clock, int flags, const timespec* 
   Agent* const agent = tether::as_is::agent();
   if (agent == nullptr || !is_ours(clock))
     return TETHER_REAL(clock_nanosleep)(clock, flags, until, left);
-  if ((flags & TIMER_ABSTIME) == 0) return sleep_for(*agent, until);
+  if ((flags & TIMER_ABSTIME) == 0) return sleep_for(*agent, until, left);
   if (!duration_of(*until)) return EINVAL;
   const Inside inside;
   const KeepErrno keep;
-  agent->sleep_until(et_of(clock, *until));
-  return 0;
+  return agent->sleep_until(et_of(clock, *until)) ? 0 : EINTR;
 }
 
 TETHER_IN_PLACE int usleep(useconds_t duration_us) {
@@ -87,8 +89,9 @@ TETHER_IN_PLACE int usleep(useconds_t duration_us) {
 TETHER_IN_PLACE unsigned sleep(unsigned duration_s) {
   if (agent() == nullptr) return TETHER_REAL(sleep)(duration_s);
   const timespec time{static_cast<time_t>(duration_s), 0};
-  nanosleep(&time, nullptr);
-  return 0;
+  timespec left{};
+  const bool is_over = nanosleep(&time, &left) == 0;
+  return is_over ? 0 : static_cast<unsigned>(left.tv_sec) + (left.tv_nsec > 0 ? 1U : 0U);
 }
 
 namespace tether::as_is {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <utility>
+
 #include <dlfcn.h>
 
 /// The C library's own functions, behind those that this library has in their place.
@@ -18,13 +20,22 @@ namespace tether::as_is {
 class Inside {
  public:
   Inside() { ++depth_; }
-  ~Inside() { --depth_; }
+  ~Inside() {
+    if (--depth_ == 0 && has_late_) end();
+  }
   Inside(const Inside&) = delete;
   Inside& operator=(const Inside&) = delete;
 
   static bool is() { return depth_ > 0; }
 
+  /// For the program's handlers of signals (signals.h).
+  static int leave_all() { return std::exchange(depth_, 0); }
+  static void enter_again(int depth) { depth_ = depth; }
+  static thread_local bool has_late_ __attribute__((tls_model("initial-exec")));
+
  private:
+  static void end();
+
   static thread_local int depth_ __attribute__((tls_model("initial-exec")));
 };
 

@@ -21,19 +21,23 @@ constexpr std::array<std::string_view, 12> kStarters = {"env",    "sh",      "da
                                                         "stdbuf", "time",    "ionice", "setsid"};
 
 bool is_starter() {
-  char path[4096];
-  const ssize_t size = ::readlink("/proc/self/exe", path, sizeof path);
-  const std::string_view whole(path, size > 0 ? static_cast<std::size_t>(size) : 0);
-  const std::string_view name = whole.substr(whole.rfind('/') + 1);
+  const std::string name = program_name();
   for (const std::string_view starter : kStarters)
     if (name == starter) return true;
   return false;
 }
 
-// TETHER_AS_IS has the process that tether-exec became, or "group": then all are.
+bool is_shell() {
+  return program_name().ends_with("sh");
+}
+
+// TETHER_AS_IS has the process that tether-exec became, or "group": then all are, as are those of
+// a program that is stopped.
 bool is_under_test() {
   const char* const process = std::getenv("TETHER_AS_IS");
   if (process != nullptr && std::string_view(process) == "group") return true;
+  const char* const socket = std::getenv("TETHER_EXEC");
+  if (process != nullptr && socket != nullptr && *socket != 0) return !is_starter() || is_shell();
   return process != nullptr && std::to_string(::getpid()) == process && !is_starter();
 }
 

@@ -3,9 +3,13 @@
 #include <atomic>
 #include <cstdint>
 
+#include <signal.h>
 #include <sys/types.h>
 
 namespace tether::as_is {
+
+/// Starts a thread of the program that calls the function of a timer with SIGEV_THREAD.
+void start_thread(const sigevent& event);
 
 /// The threads of this process: whether all but the calling one wait.
 class Threads {

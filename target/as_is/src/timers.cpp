@@ -5,10 +5,13 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <climits>
 #include <cstdint>
+#include <utility>
 
 #include <poll.h>
 #include <sys/eventfd.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 namespace tether::as_is {
@@ -59,6 +62,13 @@ int Timers::create(clockid_t clock, int flags) {
   return fd;
 }
 
+int Timers::create(clockid_t clock, const sigevent& event) {
+  const std::lock_guard lock(mutex_);
+  timers_.push_back({.clock = clock, .fds = {--last_number_}, .event = event});
+  ++count_;
+  return last_number_;
+}
+
 bool Timers::is_ours(int fd) const {
   if (count_ == 0) return false;
   const std::lock_guard lock(mutex_);
@@ -76,7 +86,7 @@ int Timers::set(int fd, int flags, const itimerspec& value, itimerspec* old, Exe
   if (timer == nullptr) return invalid();  // another thread has closed it
   if (old != nullptr) *old = timer->left(now);
   std::uint64_t dropped = 0;
-  static_cast<void>(take_count(fd, &dropped, sizeof dropped));
+  if (!timer->event) static_cast<void>(take_count(fd, &dropped, sizeof dropped));
   timer->interval = *interval;
   timer->expiry.reset();
   if (*first > Duration(0))
@@ -99,6 +109,13 @@ int Timers::get(int fd, itimerspec* value, ExecTime now) {
 ssize_t Timers::take(int fd, void* bytes, std::size_t size) {
   const std::lock_guard lock(mutex_);
   return take_count(fd, bytes, size);
+}
+
+int Timers::overrun(int number) const {
+  const std::lock_guard lock(mutex_);
+  for (const Timer& timer : timers_)
+    if (timer.fds.front() == number) return timer.overrun;
+  return invalid();
 }
 
 void Timers::forget(int fd) {
@@ -124,10 +141,18 @@ std::optional<ExecTime> Timers::next() const {
   return next == ExecTime::max() ? std::nullopt : std::optional(next);
 }
 
+bool Timers::have_events() const {
+  if (count_ == 0) return false;
+  const std::lock_guard lock(mutex_);
+  return std::ranges::any_of(timers_,
+                             [](const Timer& timer) { return timer.event && timer.expiry; });
+}
+
 bool Timers::fire(ExecTime now) {
   if (next_.load() > now) return false;
-  const std::lock_guard lock(mutex_);
+  std::unique_lock lock(mutex_);
   bool is_any = false;
+  std::vector<std::pair<sigevent, int>> events;
   for (Timer& timer : timers_) {
     if (!timer.expiry || *timer.expiry > now) continue;
     const std::int64_t more =
@@ -137,11 +162,35 @@ bool Timers::fire(ExecTime now) {
       *timer.expiry += static_cast<std::int64_t>(count) * timer.interval;
     else
       timer.expiry.reset();
-    static_cast<void>(TETHER_REAL(write)(timer.fds.front(), &count, sizeof count));
     is_any = true;
+    if (timer.event) {
+      timer.overrun = static_cast<int>(std::min<std::int64_t>(more, INT_MAX));
+      events.emplace_back(*timer.event, timer.overrun);
+    } else {
+      static_cast<void>(TETHER_REAL(write)(timer.fds.front(), &count, sizeof count));
+    }
   }
   find_next();
+  lock.unlock();
+  for (const auto& [event, overrun] : events) notify(event, overrun);
   return is_any;
+}
+
+// A handler may be called at once, and may set its timer.
+void Timers::notify(const sigevent& event, int overrun) const {
+  if (event.sigev_notify == SIGEV_THREAD && start_thread_ != nullptr) start_thread_(event);
+  if (event.sigev_notify != SIGEV_SIGNAL && event.sigev_notify != SIGEV_THREAD_ID) return;
+  siginfo_t info{};
+  info.si_signo = event.sigev_signo;
+  info.si_code = SI_TIMER;
+  info.si_overrun = overrun;
+  info.si_value = event.sigev_value;
+  const pid_t process = ::getpid();
+  if (event.sigev_notify == SIGEV_SIGNAL)
+    TETHER_REAL(syscall)(SYS_rt_sigqueueinfo, process, event.sigev_signo, &info);
+  else
+    TETHER_REAL(syscall)
+  (SYS_rt_tgsigqueueinfo, process, event._sigev_un._tid, event.sigev_signo, &info);
 }
 
 }  // namespace tether::as_is

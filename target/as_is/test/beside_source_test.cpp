@@ -67,10 +67,29 @@ TEST_F(AsIsBesideSource, TimeDoesNotGoBackWhoeverCalls) {
   Threads::ended();
 }
 
+TEST_F(AsIsBesideSource, OfAWallClockItIsOnlyKnown) {
+  const auto wall = charge_beside_calls(client::make_wall_source());
+  client::SutClock clock(*wall);
+  const Duration before = computed_beside_calls();
+  const auto beside = [&] { return computed_beside_calls() - before; };
+  clock.hold();
+  compute_for(milliseconds(20));
+  clock.resume(kReply);
+  EXPECT_LT(clock.now(), kReply + milliseconds(10));
+  EXPECT_LT(beside(), milliseconds(10)) << "the thread that calls";
+  std::thread([] { compute_for(milliseconds(20)); }).join();
+  EXPECT_LT(beside(), milliseconds(10)) << "no call is open";
+  clock.hold();
+  std::thread([] { compute_for(milliseconds(20)); }).join();
+  clock.resume(kReply + std::chrono::seconds(1));
+  EXPECT_GE(beside(), milliseconds(20));
+  EXPECT_LT(clock.now(), kReply + milliseconds(1010));
+}
+
 TEST_F(AsIsBesideSource, OtherClocksAreLeftAsTheyAre) {
-  auto wall = client::make_wall_source();
-  const client::TimeSource* const same = wall.get();
-  EXPECT_EQ(charge_beside_calls(std::move(wall)).get(), same);
+  auto scripted = client::make_scripted_source(milliseconds(1));
+  const client::TimeSource* const same = scripted.get();
+  EXPECT_EQ(charge_beside_calls(std::move(scripted)).get(), same);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include "clocks.h"
 
 #include <cerrno>
+#include <csignal>
 
 #include <gtest/gtest.h>
 #include <poll.h>
@@ -113,6 +114,53 @@ TEST_F(AsIsTimers, RefusesWhatTheKernelRefuses) {
   char little[4];
   EXPECT_EQ(timers_.take(fd_, little, sizeof little), -1);
   EXPECT_EQ(errno, EINVAL);
+}
+
+int g_signals = 0, g_overrun = 0;
+
+TEST_F(AsIsTimers, OneThatIsNoDescriptorSendsItsSignal) {
+  struct sigaction action {};
+  action.sa_sigaction = [](int, siginfo_t* info, void*) {
+    ++g_signals;
+    g_overrun = info->si_overrun;
+  };
+  action.sa_flags = SA_SIGINFO;
+  ::sigaction(SIGUSR2, &action, nullptr);
+  sigevent event{};
+  event.sigev_notify = SIGEV_SIGNAL;
+  event.sigev_signo = SIGUSR2;
+  const int timer = timers_.create(CLOCK_MONOTONIC, event);
+  EXPECT_TRUE(timers_.is_ours(timer));
+  EXPECT_FALSE(timers_.have_events());
+  ASSERT_EQ(timers_.set(timer, 0, spec(10, 5), nullptr, at(0)), 0);
+  EXPECT_TRUE(timers_.have_events());
+  EXPECT_EQ(timers_.next(), at(10));
+  timers_.fire(at(9));
+  EXPECT_EQ(g_signals, 0);
+  timers_.fire(at(10));
+  EXPECT_EQ(g_signals, 1);
+  timers_.fire(at(26));  // at 15, 20 and 25
+  EXPECT_EQ(g_signals, 2);
+  EXPECT_EQ(g_overrun, 2);
+  EXPECT_EQ(timers_.overrun(timer), 2);
+  timers_.forget(timer);
+  EXPECT_FALSE(timers_.have_events());
+  EXPECT_EQ(timers_.next(), std::nullopt);
+  EXPECT_FALSE(timers_.is_ours(timer));
+  ::signal(SIGUSR2, SIG_DFL);
+}
+
+TEST_F(AsIsTimers, OneThatStartsThreadsCallsWhoDoesThat) {
+  static int started = 0;
+  Timers starting([](const sigevent& event) { started = event.sigev_value.sival_int; });
+  sigevent event{};
+  event.sigev_notify = SIGEV_THREAD;
+  event.sigev_value.sival_int = 7;
+  const int timer = starting.create(CLOCK_MONOTONIC, event);
+  ASSERT_EQ(starting.set(timer, TIMER_ABSTIME, spec(1'000'020), nullptr, at(0)), 0);
+  EXPECT_EQ(starting.next(), at(20));
+  starting.fire(at(20));
+  EXPECT_EQ(started, 7);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <csignal>
 #include <functional>
+#include <sstream>
 #include <thread>
 
 #include <gmock/gmock.h>
@@ -163,6 +164,36 @@ TEST_F(OnABoard, AMixedFleetFliesWithTheClockAndTheReadingsOfEach) {
   EXPECT_EQ(result()["this_run"]["target"]["name"], "pi");
   EXPECT_EQ(result()["this_run"]["target"]["address"], board_.address());
   EXPECT_TRUE(result()["this_run"]["more_targets"][0]["before"].contains("load_average"));
+  EXPECT_EQ(audit_code(out_), 0);
+}
+
+// By its own clock, all of it stopped while images are sent there.
+TEST_F(OnABoard, AProgramAsItIsReadsItsCameraThere) {
+  board_.install("tether-exec", TETHER_EXEC_PROGRAM);
+  board_.install("camera_program", CAMERA_PROGRAM);
+  const auto file = folder_ / "as_is.toml";
+  write_text(
+      file,
+      "name = \"as_is\"\nworld = \"yard\"\ntime_limit_s = 20\n[[uav]]\nname = \"uav1\"\nmodel = "
+      "\"hummingbird\"\nposition_m = [0.0, 0.0, 0.1]\nprofile = \"paper_streaming\"\n"
+      "[sut]\ncommand = [\"camera_program\"]\nas_is = true\nall_processes = true\n"
+      "[[condition]]\nname = \"c\"\npolicy = \"conservative_barrier\"\nclock = \"cpu\"\n");
+  expect_good(on_board(
+      tether({"run", file, "--quiet", "--target", board_.address(), "--out", out_}, mark_)));
+  EXPECT_EQ(result()["clock"], "wall");
+  std::istringstream lines(read_text(out_ / "sut-uav1.log"));
+  int images = 0, bright = 0;
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    std::string how;
+    long number = 0, age_us = 0, waited_us = 0;
+    bool is_bright = false;
+    if (!(words >> how >> number >> age_us >> waited_us >> is_bright)) continue;
+    ++images, bright += is_bright;
+    EXPECT_GE(age_us, 37'400) << how << ": its delay";
+  }
+  EXPECT_EQ(images, 10);
+  EXPECT_EQ(bright, 10);
   EXPECT_EQ(audit_code(out_), 0);
 }
 

@@ -2,6 +2,7 @@
 // long that took by MONOTONIC and REALTIME [µs].
 #include <chrono>
 #include <condition_variable>
+#include <csignal>
 #include <cstdint>
 #include <cstdio>
 #include <ctime>
@@ -19,6 +20,7 @@
 #include <sys/select.h>
 #include <sys/socket.h>
 #include <sys/syscall.h>
+#include <sys/time.h>
 #include <sys/timerfd.h>
 #include <unistd.h>
 
@@ -51,9 +53,81 @@ void take(const char* name, const std::function<void()>& wait) {
   std::printf("%s %ld %ld\n", name, us(CLOCK_MONOTONIC) - monotonic, us(CLOCK_REALTIME) - real);
 }
 
+volatile std::sig_atomic_t g_alarms = 0;
+sem_t g_expired;
+
+// Timers that send signals, or start threads, while the program waits in each way, or computes.
+void wait_for_signals() {
+  struct sigaction action {};
+  action.sa_handler = [](int) { g_alarms = g_alarms + 1; };
+  sigaction(SIGALRM, &action, nullptr);
+  const itimerval once{{}, {0, kWait_ns / 1000}};
+  const timespec second{1, 0};
+  const auto alarmed = [&](const char* name, const std::function<void()>& wait) {
+    take(name, [&] {
+      g_alarms = 0;
+      setitimer(ITIMER_REAL, &once, nullptr);
+      wait();
+      if (g_alarms != 1) std::printf("alarms_of_%s %d 0\n", name, static_cast<int>(g_alarms));
+    });
+  };
+  alarmed("alarm_pause", [] { pause(); });
+  alarmed("alarm_sleep", [&] { nanosleep(&second, nullptr); });
+  alarmed("alarm_poll", [] { poll(nullptr, 0, 1000); });
+  alarmed("alarm_semaphore", [&] {
+    const timespec until{later(CLOCK_REALTIME).tv_sec + 1, 0};
+    sem_timedwait(&g_expired, &until);
+  });
+  alarmed("alarm_computing", [] {
+    while (g_alarms == 0) {
+    }
+  });
+  sigset_t expiry;
+  sigemptyset(&expiry);
+  sigaddset(&expiry, SIGRTMIN);
+  sigprocmask(SIG_BLOCK, &expiry, nullptr);
+  const timespec duration{0, kWait_ns};
+  take("sigtimedwait", [&] { sigtimedwait(&expiry, nullptr, &duration); });
+
+  sigevent event{};
+  event.sigev_notify = SIGEV_SIGNAL;
+  event.sigev_signo = SIGRTMIN;
+  timer_t timer{};
+  timer_create(CLOCK_MONOTONIC, &event, &timer);
+  const itimerspec quarters{{0, kWait_ns / 4}, {0, kWait_ns / 4}}, never{};
+  take("timer_sigtimedwait", [&] {
+    timer_settime(timer, 0, &quarters, nullptr);
+    for (int periods = 0; periods < 4; periods += 1 + timer_getoverrun(timer))
+      if (sigtimedwait(&expiry, nullptr, &second) != SIGRTMIN) break;
+  });
+  timer_settime(timer, 0, &never, nullptr);
+  timer_delete(timer);
+  event.sigev_signo = SIGALRM;
+  event.sigev_notify = SIGEV_THREAD_ID;
+  event._sigev_un._tid = gettid();
+  timer_create(CLOCK_REALTIME, &event, &timer);
+  take("timer_thread_id", [&] {
+    const itimerspec at{{}, later(CLOCK_REALTIME)};
+    timer_settime(timer, TIMER_ABSTIME, &at, nullptr);
+    pause();
+  });
+  timer_delete(timer);
+  sigevent starts{};
+  starts.sigev_notify = SIGEV_THREAD;
+  starts.sigev_notify_function = [](sigval) { sem_post(&g_expired); };
+  timer_create(CLOCK_MONOTONIC, &starts, &timer);
+  take("timer_thread", [&] {
+    const itimerspec first{{}, duration};
+    timer_settime(timer, 0, &first, nullptr);
+    sem_wait(&g_expired);
+  });
+  timer_delete(timer);
+}
+
 }  // namespace
 
 int main() {
+  sem_init(&g_expired, 0, 0);
   const timespec duration{0, kWait_ns};
   take("nanosleep", [&] { nanosleep(&duration, nullptr); });
   take("usleep", [] { usleep(kWait_ns / 1000); });
@@ -161,6 +235,7 @@ int main() {
     if (read_timer() == 3) read_timer();
   });
   timerfd_settime(timer, 0, &never, nullptr);
+  wait_for_signals();
   // One thread computes while another waits.
   take("beside_computing", [] {
     std::thread busy([] {

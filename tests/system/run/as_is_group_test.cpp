@@ -1,5 +1,6 @@
 #include "support/trials.h"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <string>
@@ -17,7 +18,8 @@ using testing::HasSubstr;
 
 class AsIsGroup : public testing::Test {
  protected:
-  Output fly(const std::string& script, double factor = 1.0, int limit_s = 20) const {
+  Output fly(const std::string& script, double factor = 1.0, int limit_s = 20,
+             const std::string& clock = "clock = \"cpu\"\n") const {
     write_text(folder_ / "start.sh", "#!/bin/bash\n" + script);
     const auto file = folder_ / "group.toml";
     std::ostringstream text;
@@ -27,9 +29,10 @@ class AsIsGroup : public testing::Test {
             "[sut]\ncommand = [\"/bin/bash\", \""
          << (folder_ / "start.sh").string()
          << "\"]\nas_is = true\nall_processes = true\n"
-            "[[condition]]\nname = \"c\"\npolicy = \"conservative_barrier\"\nclock = \"cpu\"\n"
-            "cpu_factor = "
-         << std::fixed << factor << "\n";
+            "[[condition]]\nname = \"c\"\npolicy = \"conservative_barrier\"\n"
+         << clock;
+    if (clock.find("cpu") != std::string::npos)
+      text << "cpu_factor = " << std::fixed << factor << "\n";
     write_text(file, text.str());
     return run(tether({"run", file, "--quiet", "--force", "--out", folder_ / "out"}));
   }
@@ -164,7 +167,51 @@ TEST_F(AsIsGroup, EveryWayToWaitTakesItsTime) {
     EXPECT_GE(monotonic_us, 20'000) << name;
     EXPECT_LE(monotonic_us, 23'000) << name;
   }
-  EXPECT_EQ(ways, 27);
+  EXPECT_EQ(ways, 36);
+}
+
+// With the wall clock, all processes are stopped while the simulation catches up, here for more
+// than half of the time, and at each message that one of them sends or gets. None of them sees it.
+TEST_F(AsIsGroup, ProgramsThatAreStoppedSeeNoGap) {
+  write_text(folder_ / "link.py",
+             "import os, socket, time\n"
+             "s = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)\n"
+             "s.bind(('', 14540))\n"
+             "peer, last, back, n = s.recvfrom(1000)[1], 0.0, 0, 0\n"
+             "if os.fork() == 0: s = None\n"  // the child only looks at its clock
+             "begin = time.monotonic()\n"
+             "while last - begin < 0.4:\n"
+             "    now = time.monotonic()\n"
+             "    back, last = back + (now < last), now\n"
+             "    if s: n += len(s.recv(1000)) > 0; s.sendto(b'x', peer); time.sleep(0.001)\n"
+             "print('back', back, n, flush=True)\n");
+  const Output output =
+      fly("python3 " + (folder_ / "link.py").string() + " &\n" + WAITS_PROGRAM + "\nwait\nexit 0\n",
+          1.0, 20, "clock = \"wall\"\nreal_time_factor = 0.4\n");
+  EXPECT_EQ(output.code, 0) << output.err << said();
+  EXPECT_EQ(audit_code(folder_ / "out"), 0);
+  EXPECT_GT(read_result(folder_ / "out")["sync"]["stops"].get<int>(), 50);
+  std::istringstream lines(said());
+  std::vector<long> waits;
+  int processes = 0, messages = 0;
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    std::string name;
+    long first = 0, second = 0;
+    if (!(words >> name >> first >> second) || name.ends_with("beside_computing")) continue;
+    if (name == "back") {
+      EXPECT_EQ(first, 0) << "the clock went back";
+      ++processes, messages += static_cast<int>(second);
+      continue;
+    }
+    EXPECT_GE(first, 20'000) << name;
+    waits.push_back(first);
+  }
+  EXPECT_EQ(processes, 2) << said();
+  EXPECT_GT(messages, 0) << said();
+  ASSERT_EQ(waits.size(), 34U) << said();
+  std::ranges::nth_element(waits, waits.begin() + 17);
+  EXPECT_LE(waits[17], 25'000) << "on a busy machine, some are late";
 }
 
 TEST_F(AsIsGroup, TheEndOfTheFirstProcessEndsAll) {

@@ -110,7 +110,7 @@ TEST_F(AsIs, EveryWayToWaitTakesItsTimeByEveryClock) {
     EXPECT_LE(monotonic_us, kMost_us) << name;
     EXPECT_NEAR(static_cast<double>(real_us), static_cast<double>(monotonic_us), 500.0) << name;
   }
-  EXPECT_EQ(ways, 27);
+  EXPECT_EQ(ways, 36);
   EXPECT_EQ(audit_code(folder_ / "out"), 0);
 }
 
@@ -120,6 +120,8 @@ TEST_F(AsIs, WhatTheProgramSawIsItsExecutionTime) {
       "for i in range(50):\n"
       "    time.sleep(0.02)\n"
       "    sum(range(10000))\n"
+      "up = float(open('/proc/uptime').read().split()[0])\n"
+      "assert abs(up - time.monotonic()) < 0.02, up\n"
       "print(time.monotonic() - 1000.0)\n");
   expect_exit_0(output);
   // The rest is the end of the interpreter.
@@ -252,11 +254,50 @@ TEST_F(AsIs, UsualThingsOfProgramsGoOnToWork) {
   EXPECT_NE(said().find("all went well"), std::string::npos) << said();
 }
 
-// The kernel's own timers are not brought to ET, and the user is told.
-TEST_F(AsIs, WhatIsNotCoveredIsTold) {
-  const Output output = fly_python("import signal, time\nsignal.alarm(100)\ntime.sleep(0.2)\n");
+// A timer by a clock that only the machine has; and another computer, which need not be there.
+TEST_F(AsIs, WhatIsNotCoveredIsToldAndTheAnswerHasIt) {
+  const Output output = fly_python(
+      "import ctypes, socket, time\n"
+      "CLOCK_BOOTTIME_ALARM = 9\n"
+      "ctypes.CDLL(None).timerfd_create(CLOCK_BOOTTIME_ALARM, 0)\n"
+      "s = socket.socket()\n"
+      "s.setblocking(False)\n"
+      "s.connect_ex(('192.0.2.1', 9))\n"
+      "socket.socket().connect_ex(('127.0.0.1', 9))\n"
+      "time.sleep(0.2)\n");
   expect_exit_0(output);
-  EXPECT_NE(said().find("alarm, which follows the machine's clock"), std::string::npos) << said();
+  for (const char* what : {"uses timerfd_create, which follows the machine's clock",
+                           "talks to another computer (192.0.2.1)"}) {
+    EXPECT_NE(said().find(what), std::string::npos) << said();
+    EXPECT_NE(result()["warnings"].dump().find(what), std::string::npos) << result();
+  }
+  EXPECT_EQ(said().find("127.0.0.1"), std::string::npos) << said();
+}
+
+// Its handlers run at ET, and Python's waits go on after them.
+TEST_F(AsIs, TimersOfPythonThatSendSignalsAreAtExecutionTime) {
+  const Output output = fly_python(
+      "import signal, time\n"
+      "seen = []\n"
+      "signal.signal(signal.SIGALRM, lambda *_: seen.append(time.monotonic()))\n"
+      "begin = time.monotonic()\n"
+      "signal.setitimer(signal.ITIMER_REAL, 0.1, 0.1)\n"
+      "time.sleep(1.05)\n"
+      "signal.setitimer(signal.ITIMER_REAL, 0)\n"
+      "signal.alarm(3)\n"
+      "signal.pause()\n"
+      "print(len(seen), *(t - begin for t in seen))\n");
+  expect_exit_0(output);
+  std::istringstream words(said());
+  std::size_t count = 0;
+  ASSERT_TRUE(words >> count) << said();
+  EXPECT_EQ(count, 11U) << said();
+  double seen_s = 0.0;
+  for (std::size_t i = 1; words >> seen_s; ++i) {
+    const double at_s = i <= 10 ? 0.1 * static_cast<double>(i) : 4.05;
+    EXPECT_GE(seen_s, at_s);
+    EXPECT_LE(seen_s, at_s + 0.01);
+  }
 }
 
 struct SeenImage {

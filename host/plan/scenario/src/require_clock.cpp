@@ -24,12 +24,13 @@ void require_clock(const Scenario& scenario, const Condition& condition) {
                               "Use clock = \"cpu\" or \"wall\".",
                               uav.placement.name, condition.name))
           .about(uav.placement.name);
-    const bool is_cpu = clock == computer::ClockKind::kCpu;
-    if (uav.sut.has_all_processes && (!is_cpu || condition.policy == Policy::kFreeRunning))
+    const bool is_cpu_or_wall =
+        clock == computer::ClockKind::kCpu || clock == computer::ClockKind::kWall;
+    if (uav.sut.has_all_processes && (!is_cpu_or_wall || condition.policy == Policy::kFreeRunning))
       throw Error(ErrorCode::kBadFile, scenario.where("all_processes"),
                   fmt::format("the SUT of UAV \"{}\" flies as it is with all its processes, which "
-                              "needs clock = \"cpu\" and policy = \"conservative_barrier\", but "
-                              "condition \"{}\" has others.",
+                              "needs clock = \"cpu\" or \"wall\", and policy = "
+                              "\"conservative_barrier\", but condition \"{}\" has others.",
                               uav.placement.name, condition.name))
           .about(uav.placement.name);
     if (!uav.sut.concurrent || clock == computer::ClockKind::kWall) continue;

@@ -39,7 +39,9 @@ void require_possible(const Energy& energy, const energy::Model& model, const si
 
 /// A SUT under tether-exec: its threads may compute while others wait.
 bool is_supervised(const Scenario& scenario, const Condition& condition, std::size_t uav) {
-  if (scenario.uavs[uav].sut.concurrent) return true;
+  const Sut& sut = scenario.uavs[uav].sut;
+  const bool is_wall = computer_of(condition, uav).clock.kind == computer::ClockKind::kWall;
+  if (sut.concurrent || (sut.has_all_processes && is_wall)) return true;
   return std::ranges::any_of(
       real_boards(condition, scenario.uavs.size()),
       [uav](const RealBoard& board) { return std::ranges::count(board.uavs, uav) > 0; });

@@ -44,7 +44,7 @@ TEST(RequireClock, RefusesEmulatorsAndTheScriptedClockForAProgramAsItIs) {
   expect_refusal(0, "uav1", [&] { require_clock(scenario, condition); });
 }
 
-TEST(RequireClock, ProcessesOfOneProgramNeedTheCpuClockAndSynchronisation) {
+TEST(RequireClock, ProcessesOfOneProgramNeedAMeasuredClockAndSynchronisation) {
   Scenario scenario;
   scenario.file = "/s/ros.toml";
   scenario.uavs.resize(1);
@@ -57,6 +57,8 @@ TEST(RequireClock, ProcessesOfOneProgramNeedTheCpuClockAndSynchronisation) {
   expect_refusal(0, "uav1", [&] { require_clock(scenario, condition); });
   condition.policy = Policy::kConservativeBarrier;
   condition.computers[0].clock.kind = computer::ClockKind::kWall;
+  EXPECT_NO_THROW(require_clock(scenario, condition));
+  condition.computers[0].clock.kind = computer::ClockKind::kCounted;
   expect_refusal(0, "uav1", [&] { require_clock(scenario, condition); });
 }
 

@@ -179,8 +179,9 @@ struct Sut {
   /// It knows nothing of Tether: tether-exec --as-is makes its clocks, waits and ports those of the
   /// run.
   bool is_as_is = false;
-  /// With is_as_is: so are all processes that it starts, on one core. Needs
-  /// computer::ClockKind::kCpu, and synchronisation.
+  /// With is_as_is: so are all processes that it starts. Needs synchronisation, and
+  /// computer::ClockKind::kCpu, with which they share one core, or kWall, with which they are
+  /// stopped together.
   bool has_all_processes = false;
 };
 
