@@ -430,7 +430,8 @@ void Agent::finish(int exit_code) {
   if (is_stopped_ && !is_first()) return;
   const std::lock_guard leading(leading_);
   static_cast<void>(vehicle_->finish(
-      exit_code == 0, "the program ended with exit code " + std::to_string(exit_code), "{}"));
+      exit_code == 0, "the program ended with exit code " + std::to_string(exit_code),
+      client::details_of(Threads::computed())));
 }
 
 }  // namespace tether::as_is

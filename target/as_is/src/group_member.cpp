@@ -2,12 +2,14 @@
 
 #include "real.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <thread>
 #include <utility>
 #include <variant>
 
+#include <fcntl.h>
 #include <pthread.h>
 #include <unistd.h>
 
@@ -15,9 +17,22 @@
 
 namespace tether::as_is {
 
+namespace {
+
+std::string own_name() {
+  char arguments[1024];
+  const int file = ::open("/proc/self/cmdline", O_RDONLY | O_CLOEXEC);
+  const ssize_t size = file < 0 ? 0 : ::read(file, arguments, sizeof arguments);
+  if (file >= 0) ::close(file);
+  return client::process_name({arguments, static_cast<std::size_t>(std::max<ssize_t>(size, 0))});
+}
+
+}  // namespace
+
 GroupMember::GroupMember(std::shared_ptr<client::GroupPage> page, std::string socket)
     : page_(std::move(page)), socket_(std::move(socket)), process_(page_->enter(::getpid())) {
   page_->begin_again(::getpid());
+  if (process_ != nullptr) process_->call(own_name());
 }
 
 std::unique_ptr<GroupMember> GroupMember::of_environment() {

@@ -8,12 +8,15 @@
 #include <optional>
 #include <sstream>
 #include <string>
+#include <string_view>
 
 #include <dirent.h>
 #include <fcntl.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
+
+#include <tether/link/messages.h>
 
 namespace tether::as_is {
 namespace {
@@ -94,6 +97,24 @@ bool has_children() {
 
 std::atomic<int> Threads::count_ = 1;
 std::atomic<int> Threads::outside_ = 0;
+
+client::Computed Threads::computed() {
+  client::Computed computed;
+  DIR* const folder = ::opendir("/proc/self/task");
+  if (folder == nullptr) return computed;
+  while (const dirent* entry = ::readdir(folder)) {
+    const std::string thread = std::string("/proc/self/task/") + entry->d_name;
+    char name[64], used[64];
+    if (entry->d_name[0] == '.' || !read_file((thread + "/comm").c_str(), name, sizeof name) ||
+        !read_file((thread + "/schedstat").c_str(), used, sizeof used))
+      continue;
+    name[std::strcspn(name, "\n")] = '\0';
+    if (std::string_view(name) != link::kClientThread)
+      computed[name] += Duration(std::strtoll(used, nullptr, 10));
+  }
+  ::closedir(folder);
+  return computed;
+}
 
 bool Threads::are_others_waiting() {
   if (outside_ > 0 || (has_children() && is_child_running("/proc/self/task", 0))) return false;

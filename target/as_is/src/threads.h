@@ -6,6 +6,8 @@
 #include <signal.h>
 #include <sys/types.h>
 
+#include <tether/client/exec/computed.h>
+
 namespace tether::as_is {
 
 /// Starts a thread of the program that calls the function of a timer with SIGEV_THREAD.
@@ -31,6 +33,8 @@ class Threads {
   /// A thread of the program begins, or ends.
   static void began() { ++count_; }
   static void ended() { --count_; }
+  /// What those that are there have computed, by their names.
+  static client::Computed computed();
   static bool are_several() { return count_.load() > 1; }
 
  private:

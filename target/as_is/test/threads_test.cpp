@@ -1,10 +1,14 @@
 #include "threads.h"
 
 #include <atomic>
+#include <chrono>
 #include <thread>
 
 #include <gtest/gtest.h>
+#include <pthread.h>
 #include <unistd.h>
+
+#include <tether/os/clock.h>
 
 namespace tether::as_is {
 namespace {
@@ -47,6 +51,18 @@ TEST(AsIsThreads, AThreadThatWaitsForAnotherIsSeen) {
 TEST(AsIsThreads, NobodyIsWaitingWhileOneIsOutside) {
   const Threads::Outside outside;
   EXPECT_FALSE(Threads().are_others_waiting());
+}
+
+TEST(AsIsThreads, EachHasComputedByItsName) {
+  std::thread busy([] {
+    ::pthread_setname_np(::pthread_self(), "busy");
+    const Duration begun = os::read_clock(CLOCK_THREAD_CPUTIME_ID);
+    while (os::read_clock(CLOCK_THREAD_CPUTIME_ID) - begun < std::chrono::milliseconds(20)) {
+    }
+    EXPECT_GE(Threads::computed()["busy"], std::chrono::milliseconds(19));
+  });
+  busy.join();
+  EXPECT_EQ(Threads::computed().count("busy"), 0U);
 }
 
 }  // namespace

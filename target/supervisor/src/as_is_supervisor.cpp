@@ -28,6 +28,8 @@ constexpr Duration kBetweenPulls = std::chrono::milliseconds(2);
 constexpr Duration kBetweenForgetting = std::chrono::milliseconds(10);
 // A thread that was told just before it waited is told again [real time].
 constexpr Duration kBetweenTellings = std::chrono::milliseconds(1);
+// After so long it is told that nothing was used [ET].
+constexpr Duration kIdle = std::chrono::seconds(10);
 // Of a wait without a deadline; then it begins again.
 constexpr Duration kForEver = std::chrono::hours(1);
 
@@ -78,11 +80,29 @@ std::optional<int> AsIsSupervisor::run() {
   return std::nullopt;
 }
 
+// A program that uses some of it is right: it need not use all.
+void AsIsSupervisor::tell_if_idle() {
+  if (is_known_to_be_used_) return;
+  is_known_to_be_used_ = is_fed();
+  if (is_known_to_be_used_ || page_.now() < ExecTime(kIdle)) return;
+  is_known_to_be_used_ = true;
+  say_(
+      "for 10 s the program has used nothing of the UAV: no UDP port of a companion (14540, "
+      "14550), no serial port, and no camera");
+}
+
+bool AsIsSupervisor::is_fed() const {
+  return std::ranges::any_of(page_.processes(), [](const GroupPage::Process& one) {
+    return one.id > 0 && (one.listens || one.sensors != 0);
+  });
+}
+
 void AsIsSupervisor::forget_processes() {
   const Duration now = client::read_monotonic();
   if (now - forgotten_at_ < kBetweenForgetting) return;
   forgotten_at_ = now;
-  page_.forget_ended();
+  tell_if_idle();
+  page_.forget_ended(computed_);
 }
 
 // Descendants whose own parent has ended are children of this process.
@@ -251,10 +271,7 @@ void AsIsSupervisor::pull() {
 }
 
 void AsIsSupervisor::pull_now_and_then() {
-  const bool is_fed = std::ranges::any_of(page_.processes(), [](const GroupPage::Process& one) {
-    return one.id > 0 && (one.listens || one.sensors != 0);
-  });
-  if (is_fed && page_.now() - pulled_at_ >= kBetweenPulls) pull();
+  if (is_fed() && page_.now() - pulled_at_ >= kBetweenPulls) pull();
 }
 
 // While one computes, their CPU time grows: then there is no need to look closer.
@@ -274,8 +291,11 @@ bool AsIsSupervisor::lead() {
 }
 
 void AsIsSupervisor::finish(int exit_code) {
+  page_.forget_ended(computed_);
+  page_.add_present(computed_);
   static_cast<void>(vehicle_->finish(
-      exit_code == 0, "the program ended with exit code " + std::to_string(exit_code), "{}"));
+      exit_code == 0, "the program ended with exit code " + std::to_string(exit_code),
+      client::details_of(computed_)));
 }
 
 }  // namespace tether::supervisor

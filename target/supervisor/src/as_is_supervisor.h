@@ -52,6 +52,8 @@ class AsIsSupervisor {
   std::optional<int> reap();
   void take_signals();
   void forget_processes();
+  void tell_if_idle();
+  bool is_fed() const;
   std::vector<pollfd> ears() const;
   bool is_asked() const;
   void hear();
@@ -81,7 +83,8 @@ class AsIsSupervisor {
   std::map<CallerId, pid_t> lines_;  // to the processes, for what they wait for
   std::multiset<CallerId> unheard_;  // what they were told
   std::vector<Pull> pulls_;          // to be answered when all have heard
-  bool is_over_ = false;
+  client::Computed computed_;        // by processes that have ended
+  bool is_over_ = false, is_known_to_be_used_ = false;
   int interrupts_ = 0;
   bool is_pulling_ = false;
   Duration patience_{0}, used_{-1}, forgotten_at_{0};

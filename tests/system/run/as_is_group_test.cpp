@@ -67,6 +67,9 @@ TEST_F(AsIsGroup, ProcessesHaveOneClockAndTheirWaitsTakeNoRealTime) {
   }
   EXPECT_EQ(count, 14) << said();
   EXPECT_NEAR(read_result(folder_ / "out")["sync"]["st_at_end_s"].get<double>(), 5.2, 0.4);
+  EXPECT_TRUE(
+      read_result(folder_ / "out")["suts"][0]["details"]["computed_s"].contains("python3 one.py"))
+      << read_result(folder_ / "out")["suts"][0];
 }
 
 // What the other process computes is what a message takes there and back, on any machine under any

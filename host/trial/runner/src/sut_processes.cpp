@@ -76,7 +76,8 @@ void SutProcesses::start(const scenario::Scenario& scenario, const SutRun& run,
             .files = scenario.uavs.size() > 1 ? folder / name : folder,
             .program = {},
             .process = {},
-            .board = board};
+            .board = board,
+            .is_as_is = uav.sut.is_as_is};
     if (board) {
       const board::BoardSut there = board_sut(*board, scenario, i, run, sut.log);
       sut.program = fmt::format("{} on {}", there.words[there.program],
@@ -199,7 +200,11 @@ std::string SutProcesses::describe_end(Sut& sut, const std::string& reason) cons
   // run that began, this one may have finished.
   const bool is_unfinished = exit.code == 0 && (reason.empty() || suts_.size() == 1);
   const char* const missing =
-      is_unfinished ? " (it must call tether_connect() and, at its end, tether_finish())" : "";
+      !is_unfinished ? ""
+      : sut.is_as_is ? " (it never began under the run's clock: a shell script has to start its "
+                       "program with 'exec', or needs all_processes = true; a static program "
+                       "cannot fly as it is)"
+                     : " (it must call tether_connect() and, at its end, tether_finish())";
   return fmt::format(
       "{} ({}) {}{}{}", sut.name, sut.program, end.description, missing,
       is_complete ? "" : fmt::format("; last line of {}: {}", sut.log.string(), last));

@@ -135,7 +135,24 @@ void GroupPage::begin_again(pid_t process) {
   }
 }
 
-void GroupPage::forget_ended() {
+void GroupPage::Process::call(std::string_view text) {
+  for (std::size_t i = 0; i < name.size(); ++i)
+    name[i] = i < text.size() && i + 1 < name.size() ? text[i] : '\0';
+}
+
+std::string GroupPage::Process::called() const {
+  std::string text;
+  for (const auto& one : name)
+    if (const char c = one; c != '\0') text += c;
+  return text;
+}
+
+void GroupPage::add_present(Computed& computed) const {
+  for (const Process& one : processes_)
+    if (one.id > 0) computed[one.called()] += Duration(one.used_ns);
+}
+
+void GroupPage::forget_ended(Computed& computed) {
   for (std::size_t i = 0; i < processes_end_; ++i) {
     Process& one = processes_[i];
     const pid_t id = one.id;
@@ -143,6 +160,7 @@ void GroupPage::forget_ended() {
     begin_again(id);
     ++moves_;
     ended_ns_ += one.used_ns;
+    computed[one.called()] += Duration(one.used_ns);
     one.id = 0;
     ++moves_;
   }

@@ -58,9 +58,10 @@ TEST_F(GroupPageTest, ExecutionTimeIsTheCpuTimeOfAllProcessesTimesTheFactor) {
 }
 
 TEST_F(GroupPageTest, WhatAnEndedProcessHasComputedStays) {
+  Computed computed;
   const pid_t child = ::fork();
   if (child == 0) {
-    page_->enter(::getpid());
+    page_->enter(::getpid())->call("a child");
     compute_here(30ms);
     page_->begin_wait(::getpid(), ExecTime(1s));
     ::_exit(page_->used() >= 30ms ? 0 : 1);
@@ -70,7 +71,11 @@ TEST_F(GroupPageTest, WhatAnEndedProcessHasComputedStays) {
   EXPECT_EQ(status, 0);
   EXPECT_GE(page_->used(), 30ms);
   EXPECT_EQ(page_->first_deadline(), ExecTime(1s));
-  page_->forget_ended();
+  page_->add_present(computed);
+  EXPECT_GE(computed["a child"], 30ms);
+  computed.clear();
+  page_->forget_ended(computed);
+  EXPECT_GE(computed["a child"], 30ms);
   EXPECT_GE(page_->used(), 30ms);
   EXPECT_LT(page_->used(), 60ms);
   EXPECT_EQ(page_->first_deadline(), GroupPage::kNever) << "it waits no more";

@@ -341,6 +341,9 @@ TEST_F(LoadScenario, RefusesWrongSuts) {
        {mission, "mission = \"missions/none.toml\"", 54, "mission"},
        {mission, "Mission = \"missions/around.toml\"", 54, "Mission"},
        {mission, "anchor = \"missions/around.toml\"", 54, "anchor"},
+       {command, "all_processes = true\n" + command, 45, "all_processes"},
+       {command, "concurrent = true\nas_is = true\n" + command, 45, "concurrent"},
+       {command, "as_is = true\ncommand = [\"tether-exec\", ", 45, "as_is"},
        {command, "concurrent = true\ncommand = [\"tether-exec\", ", 45, "concurrent"},
        {command, "concurrent = true\ncommand = [\"/usr/bin/tether-exec\", ", 45, "concurrent"}});
 }

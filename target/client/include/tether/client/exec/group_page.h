@@ -8,9 +8,11 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include <tether/base/result.h>
 #include <tether/base/time.h>
+#include <tether/client/exec/computed.h>
 #include <tether/client/sut_clock.h>
 
 namespace tether::client {
@@ -32,9 +34,13 @@ class GroupPage {
   struct Process {
     std::atomic<pid_t> id{0};  // 0: none
     std::atomic<std::int64_t> used_ns{0};
-    std::atomic<ExecTime> timer{kNever};    ///< its first timer that is a descriptor expires
-    std::atomic<std::uint64_t> sensors{0};  ///< bit: index of a sensor that wakes it
-    std::atomic<bool> listens{false};       ///< it has a port of the flight controller
+    std::atomic<ExecTime> timer{kNever};       ///< its first timer that is a descriptor expires
+    std::atomic<std::uint64_t> sensors{0};     ///< bit: index of a sensor that wakes it
+    std::atomic<bool> listens{false};          ///< it has a port of the flight controller
+    std::array<std::atomic<char>, 48> name{};  ///< ends with a 0
+
+    void call(std::string_view text);
+    std::string called() const;
   };
   /// A thread waits until then.
   struct Wait {
@@ -64,8 +70,11 @@ class GroupPage {
   static void end_thread(Thread* thread);
   /// A process begins with another program: it has one thread, which does not wait.
   void begin_again(pid_t process);
-  /// Takes those out that have ended; what they have computed stays. For tether-exec.
-  void forget_ended();
+  /// Takes those out that have ended, and adds their time to `computed`; what they have computed
+  /// stays. For tether-exec.
+  void forget_ended(Computed& computed);
+  /// Adds the time of those that are there.
+  void add_present(Computed& computed) const;
   /// CPU time of all processes that have entered, less what was left out. Monotone.
   Duration used() const;
   void leave_out(Duration computed) { left_out_ns_ += computed.count(); }
