@@ -8,6 +8,7 @@
 #include <set>
 #include <string>
 #include <tuple>
+#include <vector>
 
 namespace tether::audit {
 namespace {
@@ -73,8 +74,15 @@ class RadioCheck {
           inbox.push_back({m.uav, m.sequence, m.at, indices_[m.uav]});
       std::ranges::stable_sort(inbox, {},
                                [](const Inboxed& m) { return std::pair(m.at, m.index); });
+      std::vector<const Entry*> receives;
       for (const Entry* entry : row.interactions)
-        if (entry->message.kind == record::kReceive) check_receive(*entry, *row.info, inbox);
+        if (entry->message.kind == record::kReceive) receives.push_back(entry);
+      // Of a concurrent SUT, a call whose reply was moved up waits for a stop that knows of it.
+      // One that waits beside it can have its reply before, for a later time.
+      if (row.info->concurrent)
+        std::ranges::stable_sort(receives, {},
+                                 [](const Entry* entry) { return entry->message.reply_at; });
+      for (const Entry* entry : receives) check_receive(*entry, *row.info, inbox);
     }
   }
 

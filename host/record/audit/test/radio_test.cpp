@@ -157,5 +157,23 @@ TEST(AuditOfRadio, AcceptsThatAThreadedSutHearsOfAMessageAfterAStop) {
   }
 }
 
+// Instead of the sleep, another call waits for a message: the first one gets it, and hears so
+// later.
+TEST(AuditOfRadio, AcceptsThatOneOfTwoThatWaitGetsTheMessage) {
+  const auto two_wait = [] {
+    Record record = concurrent_exchange();
+    record::Interaction& second = record.interactions[1].message;
+    second.kind = record::kReceive;
+    second.receive_until = second.sleep_until;
+    second.sleep_until.reset();
+    return record;
+  };
+  const Record record = two_wait();
+  EXPECT_TRUE(audit(record).passed()) << to_text(audit(record));
+  Record nobody = two_wait();
+  nobody.interactions[2].message.received.reset();
+  EXPECT_TRUE(rules_of(nobody).contains(3)) << "both waited, and it had arrived";
+}
+
 }  // namespace
 }  // namespace tether::audit
