@@ -3,6 +3,7 @@
 #include "clocks.h"
 #include "in_place.h"
 
+#include <bit>
 #include <cerrno>
 #include <climits>
 #include <csignal>
@@ -73,7 +74,7 @@ namespace {
 
 /// Those that the library does not count have numbers of their own, and no negative ones.
 int number_of(timer_t timer) {
-  const auto whole = reinterpret_cast<std::intptr_t>(timer);
+  const auto whole = std::bit_cast<std::intptr_t>(timer);
   return whole < 0 && whole > INT_MIN ? static_cast<int>(whole) : 0;
 }
 
@@ -120,7 +121,7 @@ TETHER_IN_PLACE int timer_create(clockid_t clock, sigevent* __restrict event,
   if (event != nullptr) own = *event;
   const Inside inside;
   const int number = agent->timers().create(clock, own);
-  *timer = reinterpret_cast<timer_t>(static_cast<std::intptr_t>(number));
+  *timer = std::bit_cast<timer_t>(static_cast<std::intptr_t>(number));
   return 0;
 }
 
