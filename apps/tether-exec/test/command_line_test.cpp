@@ -94,7 +94,9 @@ class ExecEnvironment : public testing::Test {
 
 TEST_F(ExecEnvironment, HasTheCoordinatorAndTheClock) {
   ::setenv("TETHER_UAV", "uav2", 1);
+  EXPECT_TRUE(is_wall_clock()) << "unless another one is named";
   ::setenv("TETHER_CLOCK", "wall*2.5", 1);
+  EXPECT_TRUE(is_wall_clock());
   ASSERT_TRUE(read_environment(settings_).ok());
   EXPECT_EQ(settings_.coordinator, (link::Address{"127.0.0.1", 5200}));
   EXPECT_EQ(settings_.token, "secret");
@@ -106,6 +108,7 @@ TEST_F(ExecEnvironment, MustHaveAnAddressAndAWallClock) {
   for (const char* clock : {"cpu", "cpu*4", "scripted*5"}) {
     ::setenv("TETHER_CLOCK", clock, 1);
     EXPECT_THAT(read_environment(settings_).failure().message, HasSubstr("TETHER_CLOCK")) << clock;
+    EXPECT_FALSE(is_wall_clock()) << clock;
   }
   ::unsetenv("TETHER_CLOCK");
   ::unsetenv("TETHER_ADDRESS");
