@@ -24,7 +24,7 @@ std::string program_name() {
 
 Agent::Agent(std::unique_ptr<GroupMember> group)
     : group_(std::move(group)),
-      own_source_(client::make_group_source(group_->page(), 1.0)),
+      own_source_(client::make_group_source(group_->page(), 1.0, &group_->process())),
       source_(own_source_.get()),
       factor_(1.0),
       process_(::getpid()) {

@@ -28,18 +28,37 @@ class Unpaid {
     current_->pause();
     current_->go_on();
   }
+  /// While one lives, what the calling thread computes is the program's again: a handler of a
+  /// signal, and waiting in the kernel, which is as dear as the program's own waiting.
+  class Paid {
+   public:
+    explicit Paid(bool is_any = true) : unpaid_(is_any ? current_ : nullptr) {
+      if (unpaid_ == nullptr) return;
+      unpaid_->pause();
+      current_ = nullptr;
+    }
+    ~Paid() {
+      if (unpaid_ == nullptr) return;
+      current_ = unpaid_;
+      unpaid_->go_on();
+    }
+    Paid(const Paid&) = delete;
+    Paid& operator=(const Paid&) = delete;
+
+   private:
+    Unpaid* unpaid_;
+  };
   /// A call of the vehicle, in which the clock stands anyway, unless there are other processes.
   template <class Call>
   static auto in_call(Call call) {
-    if (current_ != nullptr && clock_stands_in_calls) current_->pause();
-    auto result = call();
-    if (current_ != nullptr && clock_stands_in_calls) current_->go_on();
-    return result;
+    if (!clock_stands_in_calls) settle();
+    const Paid paid(clock_stands_in_calls);
+    return call();
   }
   static inline bool clock_stands_in_calls = true;
 
  private:
-  void go_on() { since_ = source_->counted_of_thread(); }
+  void go_on() { since_ = source_->begin_to_leave_out(); }
   void pause() { source_->leave_out(source_->counted_of_thread() - since_); }
 
   static thread_local Unpaid* current_ __attribute__((tls_model("initial-exec")));

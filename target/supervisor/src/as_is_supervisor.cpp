@@ -84,7 +84,7 @@ std::optional<int> AsIsSupervisor::run() {
 void AsIsSupervisor::tell_if_idle() {
   if (is_known_to_be_used_) return;
   is_known_to_be_used_ = is_fed();
-  if (is_known_to_be_used_ || page_.now() < ExecTime(kIdle)) return;
+  if (is_known_to_be_used_ || page_.glance() < ExecTime(kIdle)) return;
   is_known_to_be_used_ = true;
   say_(
       "for 10 s the program has used nothing of the UAV: no UDP port of a companion (14540, "
@@ -132,7 +132,7 @@ Duration AsIsSupervisor::slice() {
   patience_ = std::clamp(patience_ + patience_ / 4, kShortestSlice, kLongestSlice);
   const ExecTime first = page_.first_deadline();
   if (!unheard_.empty() || first == GroupPage::kNever) return patience_;
-  const auto until_first = static_cast<double>((first - page_.now()).count()) / factor_;
+  const auto until_first = static_cast<double>((first - page_.glance()).count()) / factor_;
   return std::clamp(Duration(static_cast<std::int64_t>(until_first)), kShortestSlice, patience_);
 }
 
@@ -209,7 +209,7 @@ void AsIsSupervisor::tell(CallerId line, link::Reply event) {
 }
 
 void AsIsSupervisor::wake_overdue() {
-  const ExecTime now = page_.now();
+  const ExecTime now = page_.glance();
   if (page_.first_deadline() > now) return;
   const Duration real = client::read_monotonic();
   for (const auto& [line, process] : std::map(lines_))
@@ -228,9 +228,13 @@ bool AsIsSupervisor::check(const Failure& failure) {
   return false;
 }
 
+// Of one instant, in which no process of the program had the core.
 void AsIsSupervisor::publish() {
-  const Duration used = page_.used();
-  page_.publish(vehicle_->now(), used, factor_);
+  for (;;) {
+    const Duration used = page_.used();
+    const ExecTime now = vehicle_->now();
+    if (page_.used() == used) return page_.publish(now, used, factor_);
+  }
 }
 
 /// Whether anything came.
@@ -266,18 +270,18 @@ void AsIsSupervisor::deliver(const Result<std::optional<client::RadioMessage>>& 
 
 // One by one: a measurement stays until its process has read it.
 void AsIsSupervisor::pull() {
-  pulled_at_ = page_.now();
+  pulled_at_ = page_.glance();
   is_pulling_ = true;
 }
 
 void AsIsSupervisor::pull_now_and_then() {
-  if (is_fed() && page_.now() - pulled_at_ >= kBetweenPulls) pull();
+  if (is_fed() && page_.glance() - pulled_at_ >= kBetweenPulls) pull();
 }
 
 // While one computes, their CPU time grows: then there is no need to look closer.
 bool AsIsSupervisor::are_all_waiting() {
-  const Duration used = page_.used();
-  return std::exchange(used_, used) == used && threads_.are_all_waiting(page_);
+  const ExecTime now = page_.glance();
+  return std::exchange(glanced_, now) == now && threads_.are_all_waiting(page_);
 }
 
 /// Lets ET go on to what comes first.
@@ -286,7 +290,7 @@ bool AsIsSupervisor::lead() {
   if (first <= now) return false;
   receive(first == GroupPage::kNever ? kForEver : first - now);
   if (!is_over_) wake_overdue();
-  pulled_at_ = page_.now();
+  pulled_at_ = page_.glance();
   return true;
 }
 

@@ -87,7 +87,8 @@ class AsIsSupervisor {
   bool is_over_ = false, is_known_to_be_used_ = false;
   int interrupts_ = 0;
   bool is_pulling_ = false;
-  Duration patience_{0}, used_{-1}, forgotten_at_{0};
+  Duration patience_{0}, forgotten_at_{0};
+  ExecTime glanced_{Duration(-1)};
   ExecTime pulled_at_{};
 };
 

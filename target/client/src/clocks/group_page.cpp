@@ -59,27 +59,34 @@ Result<void*> map(const std::string& file, int flags) {
   return memory;
 }
 
-// Of the calling thread, by leave_out.
-thread_local Duration t_left_out_of_group __attribute__((tls_model("initial-exec"))){0};
+/// Of this process, when the calling thread began to compute what it leaves out.
+thread_local Duration t_process_at_begin __attribute__((tls_model("initial-exec"))){0};
 
 class GroupSource final : public TimeSource {
  public:
-  GroupSource(GroupPage& page, double factor) : page_(page), factor_(factor) {}
+  GroupSource(GroupPage& page, double factor, GroupPage::Process* own)
+      : page_(page), factor_(factor), own_(own) {}
 
   computer::Clock clock() const override { return {computer::ClockKind::kCpu, factor_}; }
-  Duration elapsed() const override { return times_factor(page_.used(), factor_); }
-  Duration elapsed_in_children() const override { return elapsed(); }
-  void leave_out(Duration computed) override {
-    page_.leave_out(computed);
-    t_left_out_of_group += computed;
+  Duration elapsed() const override { return last_ = times_factor(page_.used(), factor_); }
+  // Of the same instant: what is computed between two looks would be charged never, or twice.
+  Duration elapsed_in_children() const override { return last_; }
+  Duration counted_of_thread() const override { return os::read_clock(CLOCK_THREAD_CPUTIME_ID); }
+  Duration begin_to_leave_out() override {
+    t_process_at_begin = os::read_clock(CLOCK_PROCESS_CPUTIME_ID);
+    return counted_of_thread();
   }
-  Duration counted_of_thread() const override {
-    return os::read_clock(CLOCK_THREAD_CPUTIME_ID) - t_left_out_of_group;
+  void leave_out(Duration computed) override {
+    if (own_ == nullptr) return;
+    const Duration of_all = os::read_clock(CLOCK_PROCESS_CPUTIME_ID) - t_process_at_begin;
+    page_.leave_out(*own_, computed, of_all - computed);
   }
 
  private:
   GroupPage& page_;
   double factor_;
+  GroupPage::Process* own_;
+  mutable std::atomic<Duration> last_{Duration(0)};
 };
 
 }  // namespace
@@ -92,9 +99,11 @@ GroupPage::Process* GroupPage::enter(pid_t process) {
     pid_t free = 0;
     if (!processes_[i].id.compare_exchange_strong(free, kTaken)) continue;
     processes_[i].used_ns = 0;
+    processes_[i].fixed_ns = 0;
     processes_[i].timer = kNever;
     processes_[i].sensors = 0;
     processes_[i].listens = false;
+    processes_[i].unseen = 0;
     processes_[i].id = process;
     reach(processes_end_, i);
     begin_thread(process, process);
@@ -127,6 +136,8 @@ void GroupPage::end_thread(Thread* thread) {
 }
 
 void GroupPage::begin_again(pid_t process) {
+  for (std::size_t i = 0; i < processes_end_; ++i)
+    if (processes_[i].id == process) processes_[i].unseen = 0;
   for (Thread& thread : threads())
     if (thread.process == process && thread.id != process && thread.id != 0) end_thread(&thread);
   for (std::size_t i = 0; i < waits_end_; ++i) {
@@ -167,6 +178,21 @@ void GroupPage::forget_ended(Computed& computed) {
 }
 
 Duration GroupPage::used() const {
+  const Duration each = used_by_each(Looks::kFixes);
+  return Duration(raise_to(latest_used_ns_, each.count() - left_out_ns_));
+}
+
+// Who reads used() while this is decided may have had it.
+void GroupPage::leave_out(Process& own, Duration computed, Duration beside) {
+  const std::int64_t fixed_ns = own.fixed_ns;
+  const Duration unfixed = used_by_process(own.id).value_or(Duration(0)) - Duration(fixed_ns);
+  const Duration most = std::min(computed, unfixed - std::max(beside, Duration(0)));
+  if (most <= Duration(0)) return;
+  left_out_ns_ += most.count();
+  if (own.fixed_ns != fixed_ns) left_out_ns_ -= most.count();
+}
+
+Duration GroupPage::used_by_each(Looks looks) const {
   for (;;) {
     const std::uint32_t moves = moves_;
     std::int64_t sum_ns = ended_ns_;
@@ -175,10 +201,12 @@ Duration GroupPage::used() const {
       const pid_t id = one.id;
       if (id <= 0) continue;
       const auto used = used_by_process(id);
-      sum_ns += used ? raise_to(one.used_ns, std::int64_t{used->count()}) : one.used_ns.load();
+      const std::int64_t now_ns =
+          used ? raise_to(one.used_ns, std::int64_t{used->count()}) : one.used_ns.load();
+      if (looks == Looks::kFixes) raise_to(one.fixed_ns, now_ns);
+      sum_ns += now_ns;
     }
-    if (moves % 2 == 0 && moves_ == moves)
-      return Duration(raise_to(latest_used_ns_, sum_ns - left_out_ns_));
+    if (moves % 2 == 0 && moves_ == moves) return Duration(sum_ns);
   }
 }
 
@@ -191,12 +219,21 @@ void GroupPage::publish(ExecTime at, Duration used, double factor) {
 }
 
 ExecTime GroupPage::now() const {
+  return raise_to(latest_, course_at(used()));
+}
+
+ExecTime GroupPage::glance() const {
+  return std::max(latest_.load(),
+                  course_at(used_by_each(Looks::kGlances) - Duration(left_out_ns_)));
+}
+
+ExecTime GroupPage::course_at(Duration used) const {
   for (;;) {
     const std::uint32_t courses = courses_;
     const ExecTime at =
         base_et_.load() +
-        times_factor(std::max(used() - Duration(base_used_ns_), Duration(0)), factor_);
-    if (courses % 2 == 0 && courses_ == courses) return raise_to(latest_, at);
+        times_factor(std::max(used - Duration(base_used_ns_), Duration(0)), factor_);
+    if (courses % 2 == 0 && courses_ == courses) return at;
   }
 }
 
@@ -261,8 +298,9 @@ Result<MappedGroupPage> map_group_page(const std::string& file) {
   return MappedGroupPage(static_cast<GroupPage*>(*memory));
 }
 
-std::unique_ptr<TimeSource> make_group_source(GroupPage& page, double factor) {
-  return std::make_unique<GroupSource>(page, factor);
+std::unique_ptr<TimeSource> make_group_source(GroupPage& page, double factor,
+                                              GroupPage::Process* own) {
+  return std::make_unique<GroupSource>(page, factor, own);
 }
 
 }  // namespace tether::client

@@ -1,8 +1,10 @@
 #include <chrono>
 #include <csignal>
 #include <thread>
+#include <vector>
 
 #include <gtest/gtest.h>
+#include <sched.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
@@ -52,9 +54,83 @@ TEST_F(GroupPageTest, ExecutionTimeIsTheCpuTimeOfAllProcessesTimesTheFactor) {
   EXPECT_LT(page_->now() - begin, 300ms);
   std::this_thread::sleep_for(50ms);
   EXPECT_LT(page_->now() - begin, 300ms) << "it has waited";
+}
+
+TEST_F(GroupPageTest, WhatIsLeftOutIsNotChargedUnlessItWasRead) {
+  GroupPage::Process& own = *page_->enter(::getpid());
+  page_->publish(ExecTime{}, page_->used(), 1.0);
   const ExecTime before = page_->now();
-  page_->leave_out(1h);
-  EXPECT_EQ(page_->now(), before) << "and does not go back";
+  compute_here(20ms);
+  page_->leave_out(own, 20ms, 0ms);
+  EXPECT_LT(page_->now() - before, 10ms);
+  compute_here(20ms);
+  EXPECT_GE(page_->glance() - before, 20ms);
+  page_->leave_out(own, 20ms, 0ms);
+  EXPECT_LT(page_->now() - before, 10ms) << "a glance fixes nothing";
+  compute_here(20ms);
+  EXPECT_GE(page_->now() - before, 20ms);
+  page_->leave_out(own, 20ms, 0ms);
+  const ExecTime then = page_->now();
+  EXPECT_GE(then - before, 20ms) << "it does not go back";
+  compute_here(20ms);
+  EXPECT_GE(page_->now() - then, 20ms) << "nor is free what comes next";
+  compute_here(20ms);
+  page_->leave_out(own, 20ms, 15ms);
+  EXPECT_GE(page_->now() - then, 35ms) << "what another thread has computed is not left out";
+}
+
+// On one core, processes compute for the program and, now and then, for the library. Whenever they
+// lose the core to each other, and whoever looks: all of the program's is charged, once, as soon
+// as it was spent.
+TEST_F(GroupPageTest, EachNanosecondOfTheProgramIsChargedOnceAsSoonAsItWasSpent) {
+  cpu_set_t before, one;
+  ASSERT_EQ(::sched_getaffinity(0, sizeof before, &before), 0);
+  CPU_ZERO(&one);
+  CPU_SET(static_cast<std::size_t>(::sched_getcpu()), &one);
+  ASSERT_EQ(::sched_setaffinity(0, sizeof one, &one), 0);
+  page_->enter(::getpid());
+  page_->publish(ExecTime{}, page_->used(), 1.0);
+  const Duration begun = page_->used();
+  const auto drawn = [](int who, int i) { return 1ms + 200us * ((i * 7 + who * 3) % 10); };
+  std::vector<pid_t> children;
+  for (const int who : {1, 2}) {
+    const pid_t child = ::fork();
+    children.push_back(child);
+    if (child != 0) continue;
+    GroupPage::Process& own = *page_->enter(::getpid());
+    for (int i = 0; i < 10'000; ++i) {
+      compute_here(drawn(who, i));
+      if (i % 3 != 0) page_->leave_out(own, drawn(who, i), 0ms);
+      if (i % 4 == 0) static_cast<void>(page_->now());
+    }
+    ::_exit(0);
+  }
+  Duration computed{0};
+  for (int i = 0; i < 100; ++i) {
+    const ExecTime begin = page_->now();
+    compute_here(drawn(0, i));
+    computed += drawn(0, i);
+    EXPECT_GE(page_->now() - begin, drawn(0, i)) << i;
+  }
+  for (const pid_t child : children) ::kill(child, SIGSTOP);
+  for (const pid_t child : children) ::waitpid(child, nullptr, WUNTRACED);
+  EXPECT_GE(page_->used() - begun, computed);
+  Duration all{0};
+  for (const auto& process : page_->processes()) all += Duration(process.used_ns);
+  EXPECT_LE(page_->used(), all) << "nothing is charged twice";
+  EXPECT_LT(page_->used(), all - 10ms) << "and most of the library's is left out";
+  for (const pid_t child : children) ::kill(child, SIGKILL);
+  for (const pid_t child : children) ::waitpid(child, nullptr, 0);
+  ::sched_setaffinity(0, sizeof before, &before);
+}
+
+TEST_F(GroupPageTest, WhatACallDoesNotChargeIsReadOnce) {
+  page_->enter(::getpid());
+  const auto source = make_group_source(*page_, 2.0);
+  const Duration at_hold = source->elapsed();
+  compute_here(5ms);
+  EXPECT_EQ(source->elapsed_in_children(), at_hold) << "of the instant of the hold";
+  EXPECT_GE(source->elapsed(), at_hold + 10ms);
 }
 
 TEST_F(GroupPageTest, WhatAnEndedProcessHasComputedStays) {
@@ -131,15 +207,30 @@ TEST_F(GroupPageTest, TellsThoseThatAreOverdueSomeTimes) {
 }
 
 TEST_F(GroupPageTest, ItsSourceIsACpuClockWhoseTimeIsThatOfChildren) {
-  page_->enter(::getpid());
-  const auto source = make_group_source(*page_, 4.0);
+  GroupPage::Process* const process = page_->enter(::getpid());
+  const auto source = make_group_source(*page_, 4.0, process);
   EXPECT_EQ(source->clock(), (computer::Clock{computer::ClockKind::kCpu, 4.0}));
-  const Duration before = source->elapsed(), own = source->counted_of_thread();
+  const Duration before = source->elapsed();
   compute_here(5ms);
   EXPECT_GE(source->elapsed() - before, 20ms);
   EXPECT_GE(source->elapsed_in_children() - before, 20ms);
+  const Duration then = source->elapsed(), own = source->begin_to_leave_out();
+  compute_here(5ms);
   source->leave_out(source->counted_of_thread() - own);
-  EXPECT_LT(source->counted_of_thread() - own, 1ms);
+  EXPECT_LT(source->elapsed() - then, 4ms);
+}
+
+// A thread that is not excluded computes beside it: that one's is not left out.
+TEST_F(GroupPageTest, ItsSourceLeavesOutNothingOfOtherThreads) {
+  GroupPage::Process* const process = page_->enter(::getpid());
+  const auto source = make_group_source(*page_, 1.0, process);
+  const Duration before = source->elapsed(), own = source->begin_to_leave_out();
+  static_cast<void>(source->elapsed());
+  std::thread([] { compute_here(20ms); }).join();
+  compute_here(20ms);
+  static_cast<void>(source->elapsed());
+  source->leave_out(source->counted_of_thread() - own);
+  EXPECT_GE(source->elapsed() - before, 40ms);
 }
 
 }  // namespace

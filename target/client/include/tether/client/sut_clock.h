@@ -35,6 +35,8 @@ class TimeSource {
   virtual void leave_out(Duration) {}
   /// What is counted of the calling thread's computing so far. Only if that is what is measured.
   virtual Duration counted_of_thread() const { return Duration(0); }
+  /// The same where that begins which leave_out() will be of.
+  virtual Duration begin_to_leave_out() { return counted_of_thread(); }
 
   /// Until its release, the calling thread works for the client library; a source that measures
   /// threads separately does not count it. One thread at a time.

@@ -30,14 +30,15 @@ class GroupPage {
   /// Of a wait without a deadline, and of a process without a timer.
   static constexpr ExecTime kNever = ExecTime::max();
 
-  /// A process of the program. `timer`, `sensors` and `listens` are its own to write.
+  /// A process of the program. What follows `fixed_ns` is its own to write.
   struct Process {
-    std::atomic<pid_t> id{0};  // 0: none
-    std::atomic<std::int64_t> used_ns{0};
+    std::atomic<pid_t> id{0};                           // 0: none
+    std::atomic<std::int64_t> used_ns{0}, fixed_ns{0};  ///< seen last; what used() had of that
     std::atomic<ExecTime> timer{kNever};       ///< its first timer that is a descriptor expires
     std::atomic<std::uint64_t> sensors{0};     ///< bit: index of a sensor that wakes it
     std::atomic<bool> listens{false};          ///< it has a port of the flight controller
     std::array<std::atomic<char>, 48> name{};  ///< ends with a 0
+    std::atomic<int> unseen{0};                ///< its threads that will hear of a signal
 
     void call(std::string_view text);
     std::string called() const;
@@ -75,13 +76,19 @@ class GroupPage {
   void forget_ended(Computed& computed);
   /// Adds the time of those that are there.
   void add_present(Computed& computed) const;
-  /// CPU time of all processes that have entered, less what was left out. Monotone.
+  /// CPU time of all processes that have entered, less what was left out. Monotone: who reads it
+  /// fixes it. Each nanosecond that is not left out is in it exactly once, as soon as it was spent.
   Duration used() const;
-  void leave_out(Duration computed) { left_out_ns_ += computed.count(); }
+  /// So much of what a thread of `own` has computed just now does not count. What used() had
+  /// already stays charged, because what is computed next would be free otherwise.
+  /// @param beside at least what other threads of `own` have computed meanwhile
+  void leave_out(Process& own, Duration computed, Duration beside);
 
   /// From ET `at`, with `used`, on. For tether-exec.
   void publish(ExecTime at, Duration used, double factor);
   ExecTime now() const;
+  /// The same of who only looks, and fixes nothing.
+  ExecTime glance() const;
 
   /// nullptr: there are too many waits.
   Wait* begin_wait(pid_t process, ExecTime deadline);
@@ -98,6 +105,10 @@ class GroupPage {
   std::span<Thread> threads() { return {threads_.data(), threads_end_.load()}; }
 
  private:
+  enum class Looks { kFixes, kGlances };
+  Duration used_by_each(Looks looks) const;
+  ExecTime course_at(Duration used) const;
+
   // Odd while something changes that is read together.
   std::atomic<std::uint32_t> moves_{0}, courses_{0};
   std::atomic<std::int64_t> ended_ns_{0}, left_out_ns_{0};
@@ -126,6 +137,8 @@ Result<MappedGroupPage> map_group_page(const std::string& file);
 
 /// The clock of the group: `elapsed()` is used() × factor, all of it in children. `page` must
 /// outlive it.
-std::unique_ptr<TimeSource> make_group_source(GroupPage& page, double factor);
+/// @param own this process; nullptr: it leaves out nothing
+std::unique_ptr<TimeSource> make_group_source(GroupPage& page, double factor,
+                                              GroupPage::Process* own = nullptr);
 
 }  // namespace tether::client
