@@ -56,7 +56,6 @@ std::optional<ExecTime> earlier_of(std::optional<ExecTime> a, std::optional<Exec
 
 }  // namespace
 
-thread_local Unpaid* Unpaid::current_ = nullptr;
 std::atomic<Agent*> Agent::instance_ = nullptr;
 std::atomic<bool> Agent::finishes_ = false;
 
@@ -172,7 +171,7 @@ void Agent::copy(int fd, int copy) {
 }
 
 bool Agent::send(std::span<const std::uint8_t> bytes) {
-  const std::lock_guard leading(leading_);
+  const auto alone = leading();
   const Unpaid unpaid(*source_);
   const Status sent = Unpaid::in_call([&] { return vehicle().send(link::kAutopilot, bytes); });
   if (sent) return true;
@@ -210,21 +209,27 @@ Duration Agent::slice(std::optional<ExecTime> deadline, Patience& patience) cons
   return std::clamp(real(*deadline - at), kShortestSlice, kLongestSlice);
 }
 
-// Whether ET went on, or a message came. Nobody may be past its deadline: that one runs first.
+Agent::Plan Agent::plan() {
+  const std::lock_guard lock(waits_mutex_);
+  Plan plan{!waits_.empty(), std::nullopt, waits_changes_};
+  for (const Wait& wait : waits_) plan.first = earlier_of(plan.first, wait.deadline);
+  plan.first = earlier_of(plan.first, timers_.next());
+  plan.is_any |= timers_.next().has_value();
+  return plan;
+}
+
+// Whether ET went on, or a message came. Nobody may be past its deadline: that one runs first. That
+// all wait is only true of what they wait for if that is the same before and after: a thread may
+// have ended one wait and begun another one.
 bool Agent::lead() {
-  const std::unique_lock leading(leading_, std::try_to_lock);
-  if (!leading || !threads_.are_others_waiting()) return false;
+  const std::unique_lock lock(leading_, std::try_to_lock);
+  if (!lock) return false;
   if (fire_timers()) return true;
-  std::optional<ExecTime> earliest = timers_.next();
-  bool is_empty = true;
-  {
-    const std::lock_guard lock(waits_mutex_);
-    is_empty = waits_.empty() && !earliest;
-    for (const auto& [deadline, wake, interrupt, shared] : waits_)
-      if (deadline) earliest = std::min(earliest.value_or(*deadline), *deadline);
-  }
-  if (is_empty || (earliest && *earliest <= now())) return false;
-  receive_until(earliest);
+  const Plan plan = this->plan();
+  if (!plan.is_any || (plan.first && *plan.first <= now())) return false;
+  if (!threads_.are_others_waiting() || wanting_ > 0 || !Signals::are_seen()) return false;
+  if (this->plan() != plan) return false;
+  receive_until(plan.first);
   fire_timers();
   wake_due();
   return true;
@@ -250,6 +255,7 @@ std::list<Agent::Wait>::iterator Agent::enter(std::optional<ExecTime> deadline,
   }
   if (is_stopped_) hear_devices();
   const std::lock_guard lock(waits_mutex_);
+  ++waits_changes_;
   return waits_.insert(waits_.end(), std::move(wait));
 }
 
@@ -290,6 +296,7 @@ void Agent::handle(client::GroupEvent event, const link::Reply& reply) {
 void Agent::leave(std::list<Wait>::iterator wait) {
   client::GroupPage::end_wait(wait->shared);
   const std::lock_guard lock(waits_mutex_);
+  ++waits_changes_;
   waits_.erase(wait);
 }
 
@@ -307,8 +314,9 @@ Agent::End Agent::wait(std::optional<ExecTime> deadline, const std::function<boo
   End end = End::kReady;
   bool leads = true;
   const auto block_openly = [&](Duration slice) {
-    const Signals::Open open;
-    block(slice, own->wake);
+    const Unpaid::Paid paid(group_ != nullptr);
+    const Signals::Open open(own->wake);
+    if (Signals::count() == handled) block(slice, own->wake);
   };
   for (;;) {
     fire_timers();
@@ -316,7 +324,7 @@ Agent::End Agent::wait(std::optional<ExecTime> deadline, const std::function<boo
     if (deadline && now() >= *deadline) end = End::kDeadline;
     if (end == End::kReady && Signals::have_run_since(handled)) end = End::kHandler;
     if (end != End::kReady) break;
-    Unpaid::settle();
+    if (!group_) Unpaid::settle();
     if (group_) {
       block_openly(kLongestToldSlice);
       continue;
@@ -342,6 +350,7 @@ bool Agent::wait_for_thread(ExecTime deadline, const std::function<bool(Duration
                             const std::function<void()>& interrupt) {
   const Unpaid unpaid(*source_);
   const auto block = [&](Duration slice) {
+    const Unpaid::Paid paid(group_ != nullptr);
     const Signals::Open open;
     return wait_openly(slice);
   };
@@ -352,7 +361,7 @@ bool Agent::wait_for_thread(ExecTime deadline, const std::function<bool(Duration
   Patience patience{.seen = now()};
   bool is_given = group_ && block(Duration(0));
   while (!is_given && now() < deadline) {
-    Unpaid::settle();
+    if (!group_) Unpaid::settle();
     // Alone, nobody can wake it at its deadline.
     is_given = block(group_        ? kLongestToldSlice
                      : is_stopped_ ? real_until(deadline)
@@ -428,7 +437,7 @@ void Agent::finish(int exit_code) {
   // What it has computed is known from now on, however it ends.
   if (group_) return static_cast<void>(group_->page().used());
   if (is_stopped_ && !is_first()) return;
-  const std::lock_guard leading(leading_);
+  const auto alone = leading();
   static_cast<void>(vehicle_->finish(
       exit_code == 0, "the program ended with exit code " + std::to_string(exit_code),
       client::details_of(Threads::computed())));

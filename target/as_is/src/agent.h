@@ -67,7 +67,11 @@ class Agent {
   /// process of the program.
   static void leave();
 
-  ExecTime now() const { return group_ ? group_->page().now() : clock_->now(); }
+  ExecTime now() const {
+    if (!group_) return clock_->now();
+    Unpaid::settle();  // what it fixes is paid
+    return group_->page().now();
+  }
   /// Of a group: there will be one more thread of the program. nullptr: nobody has to know.
   client::GroupPage::Thread* thread_begins() const {
     return group_ ? group_->page().begin_thread(process_, client::GroupPage::kBegins) : nullptr;
@@ -113,7 +117,7 @@ class Agent {
   /// What the functions of CameraFiles do, one at a time.
   template <class Call>
   auto with_cameras(Call call) {
-    const std::lock_guard leading(leading_);
+    const auto alone = leading();
     const Unpaid unpaid(*source_);
     const ToldNeeds told(*this);
     return call(cameras_);
@@ -173,6 +177,14 @@ class Agent {
   Duration real_until(std::optional<ExecTime> until) const;
   void handle(client::GroupEvent event, const link::Reply& reply);
   void tell_rooms();
+  /// With leading_. A thread of the program that waits for it does not wait for time: who leads
+  /// must see that.
+  std::unique_lock<std::mutex> leading() {
+    ++wanting_;
+    std::unique_lock lock(leading_);
+    --wanting_;
+    return lock;
+  }
   struct ToldNeeds {
     explicit ToldNeeds(Agent& agent) : agent_(agent) {}
     ~ToldNeeds() { agent_.tell_rooms(); }
@@ -186,6 +198,15 @@ class Agent {
   void tell_if_beside();
   void doubt(const std::string& text);
   struct Patience;
+  /// What all wait for: none, if nobody waits, or the first instant.
+  struct Plan {
+    bool is_any = false;
+    std::optional<ExecTime> first{};
+    unsigned changes = 0;
+
+    bool operator==(const Plan&) const = default;
+  };
+  Plan plan();
   bool lead();
   void add_sensors();
   void take_measured();
@@ -223,6 +244,8 @@ class Agent {
   std::mutex leading_;
   std::mutex waits_mutex_;
   std::list<Wait> waits_;
+  unsigned waits_changes_ = 0;    // with waits_mutex_
+  std::atomic<int> wanting_ = 0;  // threads of the program that wait for leading_
   std::once_flag leader_begins_;
   int leader_wake_ = -1;  // an eventfd: somebody begins to wait
   pid_t process_ = 0;

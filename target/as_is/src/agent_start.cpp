@@ -3,6 +3,7 @@
 #include "agent.h"
 #include "beside_source.h"
 #include "real.h"
+#include "signals.h"
 
 #include <cstdlib>
 #include <string>
@@ -29,6 +30,7 @@ Agent::Agent(std::unique_ptr<GroupMember> group)
       factor_(1.0),
       process_(::getpid()) {
   Unpaid::clock_stands_in_calls = false;
+  Signals::count_unseen_in(group_->process().unseen);
 }
 
 void Agent::start_in_group() {

@@ -78,7 +78,7 @@ void Agent::tell_gap(const char* what) {
   const std::string text = std::string("has a program that uses ") + what +
                            ", which follows the machine's clock: its time is not that of the run";
   if (!tell(text)) return;
-  const std::lock_guard leading(leading_);
+  const auto alone = leading();
   doubt(text);
 }
 
@@ -93,7 +93,7 @@ void Agent::tell_outside(const sockaddr* address) {
   const std::string text = "has a program that talks to another computer (" + other +
                            "), which has the real time: what it waits for there is not timed";
   if (!tell(text)) return;
-  const std::lock_guard leading(leading_);
+  const auto alone = leading();
   doubt(text);
 }
 

@@ -43,6 +43,10 @@ TETHER_IN_PLACE int sigtimedwait(const sigset_t* __restrict wanted, siginfo_t* _
   agent->wait_for_thread(
       agent->now() + *wait,
       [&](tether::Duration slice) {
+        if (Signals::have_run_since(handled)) {
+          error = EINTR;
+          return true;
+        }
         const timespec real = to_timespec(slice);
         result = TETHER_REAL(sigtimedwait)(wanted, info, &real);
         error = errno;

@@ -2,6 +2,7 @@
 
 #include "clocks.h"
 #include "in_place.h"
+#include "signals.h"
 
 #include <atomic>
 #include <cerrno>
@@ -53,10 +54,11 @@ void* begin(void* argument) {
 }
 
 /// `take(slice)`: the real wait, for so long in real time; ETIMEDOUT: not yet.
-/// `condition`: what it waits for; nullptr: a call that a signal interrupts.
+/// `condition`: what it waits for; nullptr: a call that this library's signal interrupts.
+/// `ends_by_handler`: also if a handler of the program runs that nothing goes on after.
 template <class Take>
 int wait_until(Agent& agent, clockid_t clock, const timespec* until, Take take,
-               pthread_cond_t* condition = nullptr) {
+               bool ends_by_handler, pthread_cond_t* condition = nullptr) {
   if (!duration_of(*until)) return EINVAL;
   const ExecTime deadline = et_of(clock, *until);
   int result = ETIMEDOUT;
@@ -66,17 +68,22 @@ int wait_until(Agent& agent, clockid_t clock, const timespec* until, Take take,
     is_interrupted = true;
     interrupt_thread(thread);
   };
+  const unsigned handled = Signals::count();
+  const auto is_ended = [&] {
+    return ends_by_handler && Signals::have_run_since(handled) && !Signals::restarts();
+  };
   const auto block = [&](Duration slice) {
+    if (is_ended()) return true;
     timespec real{};
     TETHER_REAL(clock_gettime)(CLOCK_REALTIME, &real);
     const timespec end = to_timespec(duration_of(real).value_or(Duration(0)) + slice);
     result = take(&end);
     if (result == EINTR && is_interrupted.exchange(false)) result = ETIMEDOUT;
-    return result != ETIMEDOUT;
+    return result != ETIMEDOUT || is_ended();
   };
   const Inside inside;
   agent.wait_for_thread(deadline, block, interrupt);
-  return result;
+  return result == ETIMEDOUT && is_ended() ? EINTR : result;
 }
 
 // Which clock a condition has is not told. What the two show is a billion seconds apart.
@@ -92,14 +99,15 @@ int wait_for_condition(Agent& agent, pthread_cond_t* condition, pthread_mutex_t*
       [&](const timespec* end) {
         return TETHER_REAL(pthread_cond_clockwait)(condition, mutex, CLOCK_REALTIME, end);
       },
-      condition);
+      false, condition);
 }
 
 int wait_for_semaphore(Agent& agent, sem_t* semaphore, clockid_t clock, const timespec* until) {
   if (TETHER_REAL(sem_trywait)(semaphore) == 0) return 0;
-  const int result = wait_until(agent, clock, until, [&](const timespec* end) {
+  const auto take = [&](const timespec* end) {
     return TETHER_REAL(sem_timedwait)(semaphore, end) == 0 ? 0 : errno;
-  });
+  };
+  const int result = wait_until(agent, clock, until, take, true);
   if (result == 0) return 0;
   errno = result;
   return -1;
@@ -117,9 +125,10 @@ long wait_for_futex(Agent& agent, long word, long operation, long value, const t
                   : shown(clock, agent.now() + duration_of(timeout).value_or(Duration(0)));
   const long plain = FUTEX_WAIT_BITSET | FUTEX_CLOCK_REALTIME | (operation & FUTEX_PRIVATE_FLAG);
   const long mask = is_absolute ? bits : static_cast<long>(FUTEX_BITSET_MATCH_ANY);
-  const int result = wait_until(agent, clock, &until, [&](const timespec* end) {
+  const auto take = [&](const timespec* end) {
     return TETHER_REAL(syscall)(SYS_futex, word, plain, value, end, 0L, mask) == 0 ? 0 : errno;
-  });
+  };
+  const int result = wait_until(agent, clock, &until, take, true);
   errno = result;
   return result == 0 ? 0 : -1;
 }
@@ -213,9 +222,10 @@ TETHER_IN_PLACE int pthread_mutex_clocklock(pthread_mutex_t* mutex, clockid_t cl
                                             const timespec* until) {
   Agent* const agent = tether::as_is::agent();
   if (agent == nullptr) return TETHER_REAL(pthread_mutex_clocklock)(mutex, clock, until);
-  return wait_until(*agent, clock, until, [&](const timespec* end) {
+  const auto take = [&](const timespec* end) {
     return TETHER_REAL(pthread_mutex_clocklock)(mutex, CLOCK_REALTIME, end);
-  });
+  };
+  return wait_until(*agent, clock, until, take, false);
 }
 
 TETHER_IN_PLACE int pthread_mutex_timedlock(pthread_mutex_t* __restrict mutex,

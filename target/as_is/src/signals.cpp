@@ -1,15 +1,18 @@
 #include "signals.h"
 
 #include "real.h"
+#include "unpaid.h"
 
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <cerrno>
 #include <cstddef>
+#include <cstdint>
 #include <utility>
 
 #include <ucontext.h>
+#include <unistd.h>
 
 namespace tether::as_is {
 namespace {
@@ -26,6 +29,8 @@ constexpr std::size_t kMostLate = 16;
 thread_local std::array<Late, kMostLate> t_late __attribute__((tls_model("initial-exec")));
 thread_local std::size_t t_late_count __attribute__((tls_model("initial-exec"))) = 0;
 
+std::atomic<int> g_unseen = 0;
+
 /// A thread's own fault, which its handler has to see where it happens.
 bool is_fault(int signal) {
   constexpr std::array kFaults = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGTRAP, SIGSYS, SIGABRT};
@@ -35,13 +40,32 @@ bool is_fault(int signal) {
 }  // namespace
 
 thread_local int Inside::depth_ = 0;
+thread_local Unpaid* Unpaid::current_ = nullptr;
 thread_local unsigned Signals::count_ = 0;
 thread_local bool Signals::restarts_ = false;
 thread_local bool Signals::is_open_ = false;
+thread_local bool Signals::is_unseen_ = false;
+thread_local int Signals::wake_ = -1;
+std::atomic<std::atomic<int>*> Signals::unseen_ = &g_unseen;
 thread_local bool Inside::has_late_ = false;
 
 void Inside::end() {
   Signals::run_late();
+}
+
+Signals::Open::Open(int wake) {
+  wake_ = wake;
+  is_open_ = true;
+  if (Inside::has_late_) run_late();
+}
+
+Signals::Open::~Open() {
+  is_open_ = false;
+  see();
+}
+
+void Signals::see() {
+  if (std::exchange(is_unseen_, false)) --*unseen_.load();
 }
 
 int Signals::set(int signal, const struct sigaction* action, struct sigaction* old) {
@@ -83,7 +107,9 @@ void Signals::handle(int signal, siginfo_t* info, void* context) {
 void Signals::run(int signal, siginfo_t* info, void* context) {
   const struct sigaction own = g_own[static_cast<std::size_t>(signal)];
   const bool was_open = std::exchange(is_open_, false);
+  see();  // the handler may never return
   const int depth = Inside::leave_all();
+  const Unpaid::Paid paid;
   if ((own.sa_flags & SA_SIGINFO) != 0)
     own.sa_sigaction(signal, info, context);
   else
@@ -92,6 +118,11 @@ void Signals::run(int signal, siginfo_t* info, void* context) {
   is_open_ = was_open;
   ++count_;
   restarts_ = (own.sa_flags & SA_RESTART) != 0;
+  if (!was_open) return;
+  ++*unseen_.load();
+  is_unseen_ = true;
+  constexpr std::uint64_t kOnce = 1;
+  if (wake_ >= 0) static_cast<void>(TETHER_REAL(write)(wake_, &kOnce, sizeof kOnce));
 }
 
 void Signals::run_late() {

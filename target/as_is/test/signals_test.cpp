@@ -1,10 +1,15 @@
 #include "signals.h"
 
 #include "real.h"
+#include "unpaid.h"
 
+#include <atomic>
 #include <csignal>
+#include <cstdint>
 
 #include <gtest/gtest.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
 
 namespace tether::as_is {
 namespace {
@@ -62,6 +67,56 @@ TEST_F(AsIsSignals, AWaitHearsThatAHandlerHasRun) {
   EXPECT_EQ(g_ran, 1);
   EXPECT_TRUE(Signals::have_run_since(then));
   EXPECT_EQ(g_ran, 2);
+}
+
+// Between the last look and the kernel's wait: it would not end that one.
+TEST_F(AsIsSignals, NobodyGoesOnBeforeAThreadHasSeenItsHandler) {
+  const Inside inside;
+  const int wake = ::eventfd(0, EFD_NONBLOCK);
+  std::uint64_t count = 0;
+  std::raise(SIGUSR1);
+  EXPECT_EQ(g_ran, 0);
+  {
+    const Signals::Open open(wake);
+    EXPECT_EQ(g_ran, 1) << "what came before runs before it waits";
+    EXPECT_EQ(::read(wake, &count, sizeof count), ssize_t{sizeof count});
+    std::raise(SIGUSR1);
+    EXPECT_EQ(g_ran, 2);
+    EXPECT_FALSE(Signals::are_seen());
+    EXPECT_EQ(::read(wake, &count, sizeof count), ssize_t{sizeof count}) << "it does not wait";
+  }
+  EXPECT_TRUE(Signals::are_seen());
+  std::atomic<int> shared = 0;
+  Signals::count_unseen_in(shared);
+  const Signals::Open open;
+  std::raise(SIGUSR1);
+  EXPECT_EQ(shared, 1);
+  ::close(wake);
+}
+
+// What it computes is the program's, also while the library does not want to be paid.
+TEST_F(AsIsSignals, AHandlerIsPaid) {
+  class Counted final : public client::TimeSource {
+   public:
+    computer::Clock clock() const override { return {}; }
+    Duration elapsed() const override { return now; }
+    void leave_out(Duration computed) override { left_out += computed; }
+    Duration counted_of_thread() const override { return now; }
+    Duration now{0}, left_out{0};
+  };
+  static Counted source;
+  struct sigaction action {};
+  action.sa_handler = [](int) { source.now += Duration(100); };
+  ASSERT_EQ(Signals::set(SIGUSR1, &action, nullptr), 0);
+  const Inside inside;
+  {
+    const Unpaid unpaid(source);
+    source.now += Duration(10);
+    const Signals::Open open;
+    std::raise(SIGUSR1);
+    source.now += Duration(1);
+  }
+  EXPECT_EQ(source.left_out, Duration(11));
 }
 
 TEST_F(AsIsSignals, TheProgramSeesItsOwnHandlers) {

@@ -75,7 +75,10 @@ bool ThreadFiles::are_all_waiting(client::GroupPage& page) {
     if (!files.children) files.children = open_file(process, id, "children");
     if (!are_known_or_waiting(files.children, page)) return false;
   }
-  return switches() == before;
+  // One in which a handler ran may be about to look, however it waits.
+  const bool is_any_unseen = std::ranges::any_of(
+      page.processes(), [](const auto& one) { return one.id > 0 && one.unseen > 0; });
+  return !is_any_unseen && switches() == before;
 }
 
 // One that is not in the page has just been started, or ignores preloaded libraries.

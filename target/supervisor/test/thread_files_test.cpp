@@ -66,7 +66,11 @@ class ThreadFilesTest : public testing::Test {
 };
 
 TEST_F(ThreadFilesTest, SeesWhetherTheThreadsInThePageWait) {
-  page_->enter(child([] { ::pause(); }));
+  auto* const process = page_->enter(child([] { ::pause(); }));
+  EXPECT_TRUE(become_waiting());
+  process->unseen = 1;
+  EXPECT_FALSE(files_.are_all_waiting(*page_)) << "it has to hear of a signal first";
+  process->unseen = 0;
   EXPECT_TRUE(become_waiting());
   const pid_t computes = child(compute_for_ever);
   page_->enter(computes);
