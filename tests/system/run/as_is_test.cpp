@@ -103,7 +103,8 @@ TEST_F(AsIs, EveryWayToWaitTakesItsTimeByEveryClock) {
     if (name == "woken_beside_computing") continue;
     if (name == "beside_computing") {
       EXPECT_GE(monotonic_us, 40'000);
-      EXPECT_LE(monotonic_us, 50'000);
+      const long used_us = real_us;
+      EXPECT_LE(monotonic_us, used_us + 3'000) << "the computing thread's time, and no wait's";
       continue;
     }
     EXPECT_GE(monotonic_us, kWait_us) << name;
