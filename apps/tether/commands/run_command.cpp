@@ -138,13 +138,9 @@ void require_room(const runner::TrialRequest& request) {
 }
 
 int run_program(const RunOptions& options, const std::stop_token& stop) {
-  ProgramOptions program = options.program;
-  // A board's clock is the wall clock, which several processes cannot have.
-  const auto target = runner::parse_target_choice(options.target);
-  if (std::holds_alternative<scenario::SshAddress>(target) && !program.uses_library)
-    program.has_one_process = true;
-  const ProgramScenario made = make_program_scenario(
-      program, options.profile.string(), scenario::ShippedFiles::of_program(os::own_file()));
+  const ProgramScenario made =
+      make_program_scenario(options.program, options.profile.string(),
+                            scenario::ShippedFiles::of_program(os::own_file()));
   require_room(options.request);
   const std::filesystem::path& folder = options.request.folder;
   ProgramScenarioFile file(folder.empty() ? "out" / std::filesystem::path(made.name) : folder,
