@@ -9,7 +9,6 @@
 #include <tether/stats/sample_statistics.h>
 #include <tether/timing/pace.h>
 #include <tether/timing/timing.h>
-#include <tether/uav/setpoint.h>
 
 namespace tether::timing {
 namespace {
@@ -141,7 +140,7 @@ Pace::Losses losses_of(const record::Record& record) {
   Pace::Losses losses;
   for (const auto& logged : record.commands) {
     const record::CommandEffect& effect = logged.message;
-    if (effect.loss.empty() || effect.loss == name(uav::LossAction::kKeep) ||
+    if (effect.loss.empty() || effect.loss == "keep" ||
         same_instant(effect.applied_at) > ends[effect.uav])
       continue;
     if (losses.count++ == 0)
