@@ -37,6 +37,19 @@ std::filesystem::path source(const std::string& file) {
   return std::filesystem::path(TETHER_SOURCE_DIR) / "data" / file;
 }
 
+// Copies of a flight count once, however many seeds are flown.
+TEST(ShippedFiles, NoTwoSeedsOfAScenarioAreCopies) {
+  for (const auto& entry : std::filesystem::directory_iterator(source("scenarios"))) {
+    const Scenario scenario = load_scenario(entry.path());
+    const bool has_spread = std::ranges::any_of(
+        scenario.uavs, [](const UavSetup& uav) { return uav.yaw_spread_rad > 0.0; });
+    const bool varies = std::ranges::any_of(scenario.variations, [](const Variation& variation) {
+      return !std::holds_alternative<OneOf>(variation.distribution);
+    });
+    EXPECT_TRUE(has_spread || varies) << scenario.name;
+  }
+}
+
 /// A bare world with the scenario's UAV, and its timings after all layers, as "33333333 + 0,
 /// 37400000 ns late". No warning is expected. The shipped worlds:
 /// host/world/sim/sdf/test/project_worlds_test.cpp.
