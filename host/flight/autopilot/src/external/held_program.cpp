@@ -52,9 +52,9 @@ void HeldProgram::let_rest(const std::function<void()>& send, const std::functio
     require_alive();
     const std::uint64_t before = os::turns_of(process_.pid());
     const os::ThreadStates states = os::thread_states(process_.pid());
-    if (before != at_first && states.runnable + states.on_disk == 0 &&
-        os::turns_of(process_.pid()) == before)
-      return;
+    const bool rests = before != at_first && states.runnable + states.on_disk == 0 &&
+                       os::turns_of(process_.pid()) == before;
+    if (rests) return serve();  // what it has sent since
     if (now() - began > kLimit)
       throw Error(ErrorCode::kHung, name_ +
                                         " has not come to rest for 30 s of real time: it computes "

@@ -17,7 +17,7 @@ class HeldProgram {
 
   /// Calls `send`, which wakes a thread of the program, then `serve` again and again until that has
   /// had a core, all threads of the program wait for something, and none got a core between two
-  /// looks.
+  /// looks; and once more then.
   /// @throws Error(kLinkLost) if it has ended, with the last line of its log; Error(kHung) if it
   /// does not come to rest
   void let_rest(const std::function<void()>& send, const std::function<void()>& serve);

@@ -1,12 +1,15 @@
 #include "external/held_program.h"
 
 #include <fstream>
+#include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <tether/base/error.h>
 #include <tether/base_testing/scratch_folder.h>
+#include <tether/os/text_file.h>
 
 namespace tether::autopilot {
 namespace {
@@ -39,6 +42,22 @@ TEST_F(Held, RestsOnceItHasComputed) {
   std::getline(log, line);
   EXPECT_EQ(line, "done");
   EXPECT_GE(served, 2);
+}
+
+// An answer that is taken a step later changes the flight.
+TEST_F(Held, IsServedOnceMoreWhenItRests) {
+  const std::filesystem::path asked = scratch_.path("asked"), never = scratch_.path("never");
+  for (const auto& file : {asked, never}) ASSERT_EQ(::mkfifo(file.c_str(), 0600), 0);
+  HeldProgram program = start("read line < '" + asked.string() + "'; echo answer; read line < '" +
+                              never.string() + "'");
+  const auto has_answered = [&] { return os::read_whole(log_) == "answer\n"; };
+  bool is_answer_taken = false;
+  program.let_rest([&] { std::ofstream(asked) << "question\n"; },
+                   [&] {
+                     is_answer_taken = has_answered();
+                     while (!has_answered()) std::this_thread::yield();
+                   });
+  EXPECT_TRUE(is_answer_taken);
 }
 
 TEST_F(Held, IsLostWithTheLastLineOfItsLog) {
