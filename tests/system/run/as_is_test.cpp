@@ -458,6 +458,11 @@ TEST_F(AsIs, AnUnmodifiedCompanionFliesASquareAndASlowOneDoesNot) {
   EXPECT_GT(record_of_fast_.autopilot.size(), 1000U);
 }
 
+// The flight controller waits for missions that are planned in flight.
+TEST_F(AsIs, AnUnmodifiedCompanionFliesMissionsAndASlowOneTakesTooLong) {
+  expect_only_fast("mavlink_mission");
+}
+
 // By its camera: the slow one works on images that have waited in its buffers.
 TEST_F(AsIsCamera, AnUnmodifiedCompanionFacesABoxAndASlowOneDoesNot) {
   expect_only_fast("mavlink_face_anchor");
