@@ -3,10 +3,11 @@
 //
 // It connects to TCP 4560 + INSTANCE. Its clock is HIL_SENSOR. In the first two seconds of that, it
 // boots, and sends no actuators. Then it listens at UDP 14580 + INSTANCE; what comes there, it
-// takes and acknowledges at once, in real time, whether its clock goes on or not. It flies:
-// attitude from the gyroscopes, position from HIL_GPS and the accelerometers, and rotors where its
-// parameters (PX4_PARAM_CA_ROTOR…) say they are. PX4_PARAM_FAKE_END = N: it exits with code 7 after
-// N s of its time; PX4_PARAM_FAKE_SPIN = N: it computes without end from then on.
+// takes and acknowledges at once, in real time, whether its clock goes on or not; then, or after 10
+// ms of real time without a message, it looks whether MISSION_CURRENT is due, once a second. It
+// flies: attitude from the gyroscopes, position from HIL_GPS and the accelerometers, and rotors
+// where its parameters (PX4_PARAM_CA_ROTOR…) say they are. PX4_PARAM_FAKE_END = N: it exits with
+// code 7 after N s of its time; PX4_PARAM_FAKE_SPIN = N: it computes without end from then on.
 #include "fake_flight.h"
 
 #include <algorithm>
@@ -74,13 +75,15 @@ class FakePx4 {
     std::uint8_t bytes[65536];
     for (;;) {
       pollfd waits[2] = {{stream_, POLLIN, 0}, {datagrams_, POLLIN, 0}};
-      ::poll(waits, 2, -1);
+      constexpr int kLook_ms = 10;
+      const bool is_idle = ::poll(waits, 2, kLook_ms) == 0;
       if (waits[1].revents != 0) {
         const ssize_t size = ::recv(datagrams_, bytes, sizeof bytes, 0);
         for (const auto& frame : tether::mavlink::Decoder().push_datagram(
                  {bytes, static_cast<std::size_t>(std::max<ssize_t>(size, 0))}))
           on_companion(frame);
       }
+      if (is_idle || waits[1].revents != 0) look();
       if (waits[0].revents == 0) continue;
       const ssize_t size = ::recv(stream_, bytes, sizeof bytes, 0);
       if (size <= 0) std::_Exit(0);
@@ -148,6 +151,12 @@ class FakePx4 {
     flight_.on_companion(frame, 0x011000ff);
   }
 
+  void look() {
+    if (flight_.state.now_s < current_due_s_) return;
+    current_due_s_ += 1.0;
+    flight_.tell(Message("MISSION_CURRENT"));
+  }
+
   void tell(const Message& message, tether::mavlink::Address from) {
     const auto frame = tether::mavlink::encode(message, from, sequence_++);
     ::sendto(datagrams_, frame.data(), frame.size(), 0, reinterpret_cast<const sockaddr*>(&remote_),
@@ -158,6 +167,7 @@ class FakePx4 {
   int stream_ = -1, datagrams_ = -1;
   tether::mavlink::Decoder decoder_;
   std::uint8_t sequence_ = 0;
+  double current_due_s_ = kBoot_s + 0.5;
   Vec3 origin_;
   FakeFlight flight_{rotors(), parameter("MPC_THR_HOVER"),
                      [this](const Message& m, tether::mavlink::Address from) { tell(m, from); }};

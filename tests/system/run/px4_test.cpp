@@ -1,5 +1,6 @@
 #include "support/companion_flight.h"
 
+#include <set>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -36,6 +37,12 @@ TEST_F(Px4Flight, ACompanionFliesASquareWithAGimbalAndTwoFlightsAreTheSame) {
   EXPECT_EQ(record.header.suts[0].controller->name, "PX4 1.16.0");
   const auto& joints_rad = record.ground_truth.back().message.joints_rad;
   EXPECT_THAT(joints_rad, testing::ElementsAre(0.0, testing::DoubleNear(0.698, 0.001)));
+  // What it would send some time later in real time, it sends at its step.
+  std::set<Duration> parts_of_second;
+  for (const auto& entry : record.autopilot)
+    if (entry.message.name == "MISSION_CURRENT")
+      parts_of_second.insert(entry.message.sent_at.time_since_epoch() % std::chrono::seconds(1));
+  EXPECT_EQ(parts_of_second.size(), 1U);
   const auto digest = result_["flight_digest"];
   ASSERT_EQ(fly("path = \"build\", boot_s = 5", "again"), 0) << said_;
   EXPECT_EQ(result_["flight_digest"], digest);

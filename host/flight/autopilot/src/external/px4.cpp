@@ -155,6 +155,9 @@ class Px4 final : public ExternalController {
       if (std::exchange(has_sent_controls_, false)) simulator_.wait(kWait);
     };
     program_.let_rest(send, [this] { serve(); });
+    // Between messages, its receiver looks each 10 ms of real time whether an item of a mission, a
+    // parameter or a file is to be sent. So that it looks at each step, it gets a message.
+    if (has_spoken_) program_.let_rest([this] { fence(); }, [this] { serve(); });
   }
 
   std::vector<double> rotor_shares() const override {
@@ -165,6 +168,7 @@ class Px4 final : public ExternalController {
   }
 
   bool take(const mavlink::Message& m) override {
+    has_spoken_ = true;
     const bool is_answer = m.is("TIMESYNC") && m.integer("ts1") == fence_ && m.integer("tc1") != 0;
     has_answered_ = has_answered_ || is_answer;
     return is_answer;
@@ -201,7 +205,8 @@ class Px4 final : public ExternalController {
   std::int64_t gps_ = 0;            ///< number of the last fix
   std::int64_t fence_ = 0;
   bool has_answered_ = false;
-  bool has_asked_ = false;  ///< for its version
+  bool has_asked_ = false;   ///< for its version
+  bool has_spoken_ = false;  ///< its link to the companion is open
 };
 
 }  // namespace
