@@ -36,10 +36,11 @@
 
 // What a second of flight costs for each UAV with 1, 16, 64 and 256 UAVs: a whole coordinator with
 // its record and the embedded simulator, over loopback to a process with one thread for each UAV.
-// Each program reads every sample of the IMU, or every image, and commands a velocity; or is the
+// Each program reads every sample of the IMU, or every image, and commands a velocity; or reads an
+// IMU of 200 Hz, alone or with GNSS (10 Hz), barometer and magnetometer (50 Hz); or is the
 // companion of a built-in flight controller, and waits, or reads all that this sends. Clocks are
 // scripted, so that the flights are the same in every run.
-//   fleet_bench [SECONDS OF ST [1|16|64|256|camera|idle|active]]
+//   fleet_bench [SECONDS OF ST [1|16|64|256|camera|sensors|idle|active]]
 // All figures are milliseconds for each UAV and second of ST. CPU time does not depend much on what
 // else the machine does; wall time does. In real time are flights with UAVs × wall ≤ 1000. Each
 // flight is flown twice: to read the CPU time of the parts takes time itself, so the wall time, the
@@ -190,8 +191,8 @@ class TimedController final : public autopilot::FlightController {
 };
 
 /// What the program of a UAV does; `kIdle` and `kActive` are companions of flight controllers.
-enum class Program { kImu, kCamera, kIdle, kActive };
-constexpr std::string_view kPrograms[] = {"imu", "camera", "idle", "active"};
+enum class Program { kImu, kCamera, kFastImu, kSensors, kIdle, kActive };
+constexpr std::string_view kPrograms[] = {"imu", "camera", "200 Hz", "sensors", "idle", "active"};
 bool is_companion(Program program) {
   return program == Program::kIdle || program == Program::kActive;
 }
@@ -214,11 +215,21 @@ sim::World make_world(std::size_t uavs, Program program) {
                             .yaw_rad = 0.0});
   }
   sim::World world = sim::load_world(request, [](const Warning&) {});
-  for (sim::Uav& uav : world.uavs)
-    for (sim::Sensor& sensor : uav.sensors)
+  for (sim::Uav& uav : world.uavs) {
+    if (program == Program::kSensors) {
+      uav.sensors.push_back({"navsat", {}, 10.0, sim::NavSatModel{}});
+      uav.sensors.push_back({"barometer", {}, 50.0, sim::BarometerModel{}});
+      uav.sensors.push_back({"magnetometer", {}, 50.0, sim::MagnetometerModel{}});
+    }
+    for (sim::Sensor& sensor : uav.sensors) {
+      const bool is_imu = std::holds_alternative<sim::ImuModel>(sensor.model);
+      if (is_imu && (program == Program::kFastImu || program == Program::kSensors))
+        sensor.update_rate_hz = 200.0;
       if (auto* camera = std::get_if<sim::CameraModel>(&sensor.model))
         camera->intrinsics = uav::CameraModel::from_horizontal_fov(
             640, 480, camera->intrinsics.horizontal_fov_rad());
+    }
+  }
   return world;
 }
 
@@ -266,8 +277,21 @@ void fly(const link::Address& address, const std::string& uav, Program program, 
     if (const auto got = vehicle.receive(10ms);
         !got && got.failure().kind != Failure::Kind::kNothingYet)
       break;
+  const bool is_fast = program == Program::kFastImu || program == Program::kSensors;
+  for (int i = 0; is_fast && vehicle.now() < ExecTime(seconds); ++i) {
+    if (!vehicle.read<uav::ImuSample>("imu")) break;
+    if (program == Program::kFastImu) continue;
+    if (i % 4 == 0)
+      static_cast<void>(
+          vehicle.read<uav::BarometerSample>("barometer", client::Read::kIfAvailable));
+    if (i % 4 == 2)
+      static_cast<void>(
+          vehicle.read<uav::MagnetometerSample>("magnetometer", client::Read::kIfAvailable));
+    if (i % 20 == 1)
+      static_cast<void>(vehicle.read<uav::NavSatSample>("navsat", client::Read::kIfAvailable));
+  }
   double speed_m_s = 0.2;
-  while (!is_companion(program) && vehicle.now() < ExecTime(seconds)) {
+  while (!is_fast && !is_companion(program) && vehicle.now() < ExecTime(seconds)) {
     const bool is_read = program == Program::kCamera
                              ? static_cast<bool>(vehicle.read<uav::CameraSample>("camera"))
                              : static_cast<bool>(vehicle.read<uav::ImuSample>("imu"));
@@ -439,6 +463,8 @@ int main(int argc, char** argv) {
     for (const std::size_t uavs : {1U, 16U, 64U, 256U})
       if (only.empty() || only == std::to_string(uavs)) print_row(uavs, Program::kImu, seconds);
     if (only.empty() || only == "camera") print_row(16, Program::kCamera, seconds);
+    for (const Program program : {Program::kFastImu, Program::kSensors})
+      if (only.empty() || only == "sensors") print_row(1, program, seconds);
     for (const Program program : {Program::kIdle, Program::kActive})
       if (only.empty() || only == kPrograms[static_cast<std::size_t>(program)])
         for (const std::size_t uavs : {1U, 64U}) print_row(uavs, program, seconds);
