@@ -25,11 +25,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <tether/autopilot/built_in.h>
+#include <tether/autopilot/flight_controller.h>
 #include <tether/client/simulated_vehicle.h>
 #include <tether/coordinator/coordinator.h>
 #include <tether/link/server.h>
-#include <tether/os/clock.h>
+#include <tether/os/machine.h>
 #include <tether/record/writer.h>
 #include <tether/sim_mujoco/mujoco_simulator.h>
 #include <tether/sim_sdf/load_world.h>

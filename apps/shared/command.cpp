@@ -10,7 +10,7 @@
 #include <type_traits>
 #include <utility>
 
-#include <tether/base/suggest.h>
+#include <tether/base/text.h>
 
 namespace tether::app {
 

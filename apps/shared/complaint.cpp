@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include <tether/base/suggest.h>
+#include <tether/base/text.h>
 
 namespace tether::app {
 

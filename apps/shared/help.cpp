@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <string>
 
-#include <tether/base/text_table.h>
+#include <tether/base/text.h>
 
 namespace tether::app {
 

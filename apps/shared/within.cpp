@@ -5,7 +5,7 @@
 #include <cmath>
 #include <sstream>
 
-#include <tether/base/text_table.h>
+#include <tether/base/text.h>
 
 namespace tether::app {
 

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include <tether/base/error.h>
-#include <tether/sim/step_check.h>
+#include <tether/sim/simulator.h>
 #include <tether/sim_gazebo/gazebo_simulator.h>
 #include <tether/sim_mujoco/mujoco_simulator.h>
 #include <tether/sim_protocol/connection.h>

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include <tether/runner/back_end.h>
+#include <tether/runner/trial.h>
 
 namespace tether::app {
 

@@ -11,7 +11,7 @@
 #include <tether/audit/audit.h>
 #include <tether/base/random.h>
 #include <tether/coordinator/coordinator.h>
-#include <tether/record/in_memory.h>
+#include <tether/record/writer.h>
 #include <tether/sim_testing/fake_simulator.h>
 
 // Short flights drawn at random, each with the loops of the client library, queues, drivers, and

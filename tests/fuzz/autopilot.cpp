@@ -3,8 +3,7 @@
 #include <bit>
 #include <vector>
 
-#include <tether/autopilot/built_in.h>
-#include <tether/autopilot/signing.h>
+#include <tether/autopilot/flight_controller.h>
 #include <tether/mavlink/frame.h>
 
 /// The built-in flight controller and its signed link, and a companion that sends anything. Input:

@@ -4,7 +4,7 @@
 
 #include <cstring>
 
-#include <tether/link/frame_buffer.h>
+#include <tether/link/socket.h>
 
 namespace tether::fuzz {
 

@@ -5,7 +5,6 @@
 #include <netinet/in.h>
 #include <sys/socket.h>
 
-#include <tether/link/frame_buffer.h>
 #include <tether/link/server.h>
 #include <tether/link/socket.h>
 

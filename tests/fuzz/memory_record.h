@@ -1,6 +1,6 @@
 #pragma once
 
-#include <tether/record/in_memory.h>
+#include <tether/record/writer.h>
 
 namespace tether::fuzz {
 

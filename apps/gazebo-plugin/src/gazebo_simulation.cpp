@@ -16,7 +16,7 @@
 #include <ignition/math/Rand.hh>
 
 #include <tether/base/error.h>
-#include <tether/sim_gazebo_plugin/simulation.h>
+#include <tether/sim_gazebo_plugin/session.h>
 
 namespace tether::gazebo_plugin {
 namespace {

@@ -14,8 +14,7 @@
 
 #include <gazebo/physics/PhysicsTypes.hh>
 
-#include <tether/sim_gazebo_plugin/main_thread.h>
-#include <tether/sim_gazebo_plugin/simulation.h>
+#include <tether/sim_gazebo_plugin/session.h>
 
 namespace tether::gazebo_plugin {
 

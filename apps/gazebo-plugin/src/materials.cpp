@@ -7,7 +7,7 @@
 #include <gazebo/rendering/rendering.hh>
 
 #include <tether/base/error.h>
-#include <tether/sim_gazebo_plugin/box_mesh.h>
+#include <tether/sim_gazebo_plugin/shape_rays.h>
 
 namespace tether::gazebo_plugin {
 namespace {

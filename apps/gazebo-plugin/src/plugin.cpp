@@ -12,8 +12,6 @@
 #include <gazebo/physics/physics.hh>
 #include <gazebo/rendering/rendering.hh>
 
-#include <tether/sim_gazebo_plugin/host_line.h>
-#include <tether/sim_gazebo_plugin/main_thread.h>
 #include <tether/sim_gazebo_plugin/session.h>
 #include <tether/sim_protocol/connection.h>
 

@@ -17,14 +17,13 @@
 #include <CLI/CLI.hpp>
 #include <unistd.h>
 
-#include <tether/base/suggest.h>
+#include <tether/base/text.h>
 #include <tether/base/units.h>
 #include <tether/base/version.h>
-#include <tether/calibration/profile_text.h>
+#include <tether/calibration/characterize.h>
 #include <tether/os/terminal.h>
 #include <tether/rig/device_arguments.h>
 #include <tether/rig/mission.h>
-#include <tether/rig/task_fields.h>
 
 // The options of all commands; of this program, only this source includes CLI11. The options of
 // tasks are made from rig::task_fields, the others are defined here. After CLI11 has parsed the

@@ -4,11 +4,10 @@
 #include <string>
 #include <variant>
 
-#include <tether/calibration/calibrate.h>
+#include <tether/calibration/calibration.h>
 #include <tether/calibration/characterize.h>
 #include <tether/devices/rig.h>
 #include <tether/rig/mission.h>
-#include <tether/rig/real_row.h>
 
 namespace tether::sut {
 

@@ -9,9 +9,8 @@
 #include <utility>
 
 #include <tether/calibration/calibration.h>
-#include <tether/calibration/profile_text.h>
-#include <tether/calibration/whole_file.h>
-#include <tether/os/clock.h>
+#include <tether/calibration/characterize.h>
+#include <tether/os/machine.h>
 #include <tether/rig/png.h>
 
 /// Each command runs its part of the libraries on a connection and prints the outcome: the mission

@@ -11,8 +11,8 @@
 #include <tether/base/version.h>
 #include <tether/calibration/calibration.h>
 #include <tether/client/simulated_vehicle.h>
-#include <tether/rig/interruptible_vehicle.h>
-#include <tether/vision/runtime.h>
+#include <tether/rig/device_arguments.h>
+#include <tether/vision/anchor_tracker.h>
 
 namespace tether::sut {
 namespace {

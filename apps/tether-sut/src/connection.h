@@ -5,7 +5,7 @@
 #include <memory>
 
 #include <tether/base/result.h>
-#include <tether/calibration/sensor_table.h>
+#include <tether/calibration/characterize.h>
 #include <tether/client/vehicle.h>
 
 namespace tether::sut {

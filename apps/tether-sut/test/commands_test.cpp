@@ -8,7 +8,7 @@
 #include <toml++/toml.h>
 
 #include <tether/base_testing/scratch_folder.h>
-#include <tether/rig/interruptible_vehicle.h>
+#include <tether/rig/device_arguments.h>
 #include <tether/tasks/testing/planar_vehicle.h>
 
 namespace tether::sut {

@@ -28,12 +28,12 @@
 #include <tether/campaign/campaign_folder.h>
 #include <tether/campaign/campaign_results.h>
 #include <tether/campaign/run_campaign.h>
-#include <tether/os/program.h>
+#include <tether/os/child_process.h>
 #include <tether/os/text_file.h>
 #include <tether/report/junit.h>
 #include <tether/runner/campaign_trials.h>
-#include <tether/runner/shard_flights.h>
 #include <tether/runner/trial_folder.h>
+#include <tether/runner/trial_server.h>
 #include <tether/scenario/campaign.h>
 #include <tether/scenario/shipped_files.h>
 #include <tether/shards/engine_flights.h>

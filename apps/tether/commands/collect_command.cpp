@@ -16,7 +16,7 @@
 #include <tether/os/text_file.h>
 #include <tether/report/junit.h>
 #include <tether/runner/trial_folder.h>
-#include <tether/shards/collect.h>
+#include <tether/shards/shard.h>
 
 namespace tether::app {
 namespace {

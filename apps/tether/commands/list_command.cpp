@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include <tether/os/program.h>
+#include <tether/os/child_process.h>
 #include <tether/scenario/shipped_files.h>
 
 namespace tether::app {

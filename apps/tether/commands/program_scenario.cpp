@@ -13,7 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include <tether/autopilot/external.h>
-#include <tether/os/program.h>
+#include <tether/os/child_process.h>
 #include <tether/os/text_file.h>
 #include <tether/runner/trial_folder.h>
 #include <tether/scenario/scenario.h>

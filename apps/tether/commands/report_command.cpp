@@ -17,14 +17,12 @@
 #include <unistd.h>
 
 #include <tether/base/error.h>
-#include <tether/base/text_table.h>
+#include <tether/base/text.h>
 #include <tether/campaign/campaign_results.h>
 #include <tether/campaign/result.h>
 #include <tether/os/terminal.h>
 #include <tether/os/text_file.h>
-#include <tether/report/page.h>
 #include <tether/report/report.h>
-#include <tether/report/sweep.h>
 #include <tether/report/verdict.h>
 #include <tether/runner/trial_folder.h>
 

@@ -18,12 +18,11 @@
 
 #include <tether/campaign/folder_claim.h>
 #include <tether/campaign/result.h>
-#include <tether/os/program.h>
+#include <tether/os/child_process.h>
 #include <tether/os/terminal.h>
 #include <tether/os/text_file.h>
 #include <tether/report/junit.h>
-#include <tether/report/page.h>
-#include <tether/report/run_text.h>
+#include <tether/report/report.h>
 #include <tether/runner/trial.h>
 #include <tether/runner/trial_folder.h>
 #include <tether/runner/trial_request.h>

@@ -11,7 +11,7 @@
 #include <tether/campaign/campaign_folder.h>
 #include <tether/report/size_report.h>
 #include <tether/scenario/campaign.h>
-#include <tether/sizing/search.h>
+#include <tether/sizing/sizing.h>
 
 namespace tether::app {
 

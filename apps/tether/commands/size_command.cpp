@@ -14,8 +14,8 @@
 
 #include <tether/base/error.h>
 #include <tether/os/text_file.h>
-#include <tether/report/gnuplot.h>
 #include <tether/report/junit.h>
+#include <tether/report/plots.h>
 
 /// `tether size`: flies until the question is answered, and writes the answer.
 namespace tether::app {

@@ -10,10 +10,10 @@
 
 #include <fmt/format.h>
 
-#include <tether/os/program.h>
+#include <tether/os/child_process.h>
 #include <tether/runner/trial_request.h>
+#include <tether/scenario/scenario.h>
 #include <tether/scenario/shipped_files.h>
-#include <tether/scenario/slowness.h>
 #include <tether/sizing/sizing.h>
 
 namespace tether::app {

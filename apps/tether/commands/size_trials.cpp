@@ -20,12 +20,12 @@
 
 #include <tether/base/error.h>
 #include <tether/base/text.h>
-#include <tether/os/program.h>
+#include <tether/os/child_process.h>
 #include <tether/os/terminal.h>
 #include <tether/report/verdict.h>
 #include <tether/runner/campaign_trials.h>
 #include <tether/runner/trial_folder.h>
-#include <tether/scenario/decidable.h>
+#include <tether/scenario/scenario.h>
 #include <tether/scenario/shipped_files.h>
 
 namespace tether::app {

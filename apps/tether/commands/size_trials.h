@@ -14,7 +14,7 @@
 
 #include <tether/campaign/run_campaign.h>
 #include <tether/runner/trial_server.h>
-#include <tether/shards/engine.h>
+#include <tether/shards/engine_flights.h>
 
 namespace tether::app {
 

@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include <tether/base/text.h>
-#include <tether/os/program.h>
+#include <tether/os/child_process.h>
 #include <tether/report/size_report.h>
 #include <tether/scenario/shipped_files.h>
 

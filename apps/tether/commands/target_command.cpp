@@ -13,8 +13,7 @@
 #include <tether/base/error.h>
 #include <tether/base/version.h>
 #include <tether/board/target_probe.h>
-#include <tether/board/target_readings.h>
-#include <tether/os/program.h>
+#include <tether/os/child_process.h>
 #include <tether/scenario/shipped_files.h>
 #include <tether/scenario/target.h>
 

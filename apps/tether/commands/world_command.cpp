@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 
 #include <tether/base/text.h>
+#include <tether/os/child_process.h>
 #include <tether/os/interrupt.h>
-#include <tether/os/program.h>
 #include <tether/sim_sdf/load_world.h>
 
 namespace tether::app {

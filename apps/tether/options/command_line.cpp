@@ -22,7 +22,7 @@
 
 #include <tether/base/error.h>
 #include <tether/base/version.h>
-#include <tether/os/program.h>
+#include <tether/os/child_process.h>
 #include <tether/os/terminal.h>
 #include <tether/scenario/shipped_files.h>
 

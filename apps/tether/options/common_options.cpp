@@ -1,6 +1,6 @@
 #include "options/common_options.h"
 
-#include <tether/os/program.h>
+#include <tether/os/child_process.h>
 
 namespace tether::app {
 

@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include <tether/os/program.h>
+#include <tether/os/child_process.h>
 #include <tether/runner/trial_request.h>
 #include <tether/scenario/shipped_files.h>
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include <tether/base/warning.h>
+#include <tether/base/error.h>
 #include <tether/scenario/shipped_files.h>
 #include <tether/sim/world.h>
 

@@ -15,7 +15,6 @@
 #include <tether/base/error.h>
 #include <tether/os/text_file.h>
 #include <tether/record/reader.h>
-#include <tether/report/gnuplot.h>
 #include <tether/report/plots.h>
 
 namespace tether::app {

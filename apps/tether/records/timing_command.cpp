@@ -18,12 +18,10 @@
 #include <tether/os/terminal.h>
 #include <tether/os/text_file.h>
 #include <tether/record/reader.h>
-#include <tether/report/timing_page.h>
+#include <tether/report/report.h>
 #include <tether/report/verdict.h>
 #include <tether/runner/trial_folder.h>
 #include <tether/stats/sample_statistics.h>
-#include <tether/timing/change.h>
-#include <tether/timing/stage_table.h>
 #include <tether/timing/timing.h>
 
 /// `tether timing`: the stages of records and timing files, as tables, as a file, or compared.

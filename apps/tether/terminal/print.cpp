@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <tether/base/text_table.h>
+#include <tether/base/text.h>
 #include <tether/os/terminal.h>
 
 namespace tether::app {

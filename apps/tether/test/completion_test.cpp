@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <tether/base_testing/scratch_folder.h>
-#include <tether/os/program.h>
+#include <tether/os/child_process.h>
 #include <tether/os/text_file.h>
 
 // What shells make of the scripts. bash is on every machine that builds Tether; zsh and fish are

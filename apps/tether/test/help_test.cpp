@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include <tether/base/text_table.h>
+#include <tether/base/text.h>
 
 namespace tether::app {
 namespace {

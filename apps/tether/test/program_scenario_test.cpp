@@ -8,7 +8,7 @@
 #include <tether/autopilot/external.h>
 #include <tether/base_testing/scratch_folder.h>
 #include <tether/base_testing/thrown_error.h>
-#include <tether/os/program.h>
+#include <tether/os/child_process.h>
 #include <tether/os/text_file.h>
 #include <tether/runner/trial_folder.h>
 #include <tether/scenario/scenario.h>

@@ -3,8 +3,8 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <tether/base/enum_name.h>
 #include <tether/base/error.h>
+#include <tether/base/text.h>
 
 namespace tether {
 

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include <tether/base/json_depth.h>
+#include <tether/base/text.h>
 
 namespace tether {
 

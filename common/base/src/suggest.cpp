@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <vector>
 
-#include <tether/base/suggest.h>
 #include <tether/base/text.h>
 
 namespace tether {

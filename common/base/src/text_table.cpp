@@ -3,7 +3,7 @@
 #include <locale>
 #include <sstream>
 
-#include <tether/base/text_table.h>
+#include <tether/base/text.h>
 
 namespace tether {
 namespace {

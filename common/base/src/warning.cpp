@@ -3,7 +3,7 @@
 #include <utility>
 #include <vector>
 
-#include <tether/base/warning.h>
+#include <tether/base/error.h>
 
 namespace tether {
 namespace {

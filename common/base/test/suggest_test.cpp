@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <tether/base/suggest.h>
+#include <tether/base/text.h>
 
 namespace tether {
 namespace {

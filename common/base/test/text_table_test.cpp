@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <tether/base/text_table.h>
+#include <tether/base/text.h>
 
 namespace tether {
 namespace {

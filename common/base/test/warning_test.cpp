@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <tether/base/warning.h>
+#include <tether/base/error.h>
 
 namespace tether {
 namespace {

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include <tether/link/frame_buffer.h>
+#include <tether/link/socket.h>
 
 namespace tether::link {
 namespace {

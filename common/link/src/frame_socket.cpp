@@ -6,7 +6,7 @@
 #include <sys/socket.h>
 #include <sys/time.h>
 
-#include <tether/link/frame_socket.h>
+#include <tether/link/socket.h>
 
 namespace tether::link {
 

@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <tether/base/json_depth.h>
+#include <tether/base/text.h>
 
 namespace tether::link {
 namespace {

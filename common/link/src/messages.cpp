@@ -1,4 +1,4 @@
-#include <tether/base/enum_name.h>
+#include <tether/base/text.h>
 #include <tether/link/messages.h>
 
 namespace tether::link {

@@ -9,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include <tether/link/frame_buffer.h>
 #include <tether/link/server.h>
 #include <tether/link/socket.h>
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include <tether/link/frame_socket.h>
+#include <tether/link/socket.h>
 
 namespace tether::link {
 namespace {

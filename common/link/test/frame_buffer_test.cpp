@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <tether/base/random.h>
-#include <tether/link/frame_buffer.h>
+#include <tether/link/socket.h>
 
 namespace tether::link {
 namespace {

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 
-#include <tether/link/frame_socket.h>
+#include <tether/link/socket.h>
 
 namespace tether::link {
 namespace {

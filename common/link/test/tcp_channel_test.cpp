@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <sys/socket.h>
 
-#include <tether/link/frame_buffer.h>
+#include <tether/link/socket.h>
 
 namespace tether::link {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include <tether/mavlink/frames.h>
+#include <tether/mavlink/frame.h>
 
 namespace tether::mavlink {
 namespace {

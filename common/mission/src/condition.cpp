@@ -3,8 +3,8 @@
 #include <optional>
 #include <vector>
 
-#include <tether/base/suggest.h>
-#include <tether/mission/condition.h>
+#include <tether/base/text.h>
+#include <tether/mission/mission.h>
 #include <tether/toml/table.h>
 
 namespace tether::mission {

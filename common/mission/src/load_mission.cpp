@@ -6,7 +6,7 @@
 #include <set>
 #include <utility>
 
-#include <tether/base/suggest.h>
+#include <tether/base/text.h>
 #include <tether/mission/mission.h>
 #include <tether/toml/table.h>
 

@@ -2,7 +2,7 @@
 #include <array>
 
 #include <tether/base/units.h>
-#include <tether/mission/condition.h>
+#include <tether/mission/mission.h>
 
 namespace tether::mission {
 

@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
 
-#include <tether/mission/condition.h>
+#include <tether/mission/mission.h>
 
 namespace tether::mission {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include <tether/mission/condition.h>
+#include <tether/mission/mission.h>
 
 namespace tether::mission {
 namespace {

@@ -22,7 +22,6 @@
 #include <tether/os/file_descriptor.h>
 #include <tether/os/interrupt.h>
 #include <tether/os/process_table.h>
-#include <tether/os/program.h>
 
 extern char** environ;
 

@@ -1,7 +1,7 @@
 #include <array>
 #include <cerrno>
 
-#include <tether/os/clock.h>
+#include <tether/os/machine.h>
 
 namespace tether::os {
 

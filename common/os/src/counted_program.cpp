@@ -11,9 +11,9 @@
 #include <unistd.h>
 
 #include <tether/base/error.h>
+#include <tether/os/child_process.h>
 #include <tether/os/counted_program.h>
 #include <tether/os/file_descriptor.h>
-#include <tether/os/program.h>
 #include <tether/os/text_file.h>
 
 namespace tether::os {

@@ -9,7 +9,7 @@
 
 #include <tether/base/error.h>
 #include <tether/os/interrupt.h>
-#include <tether/os/temporary_folder.h>
+#include <tether/os/text_file.h>
 
 // A signal handler may only make few calls: it passes the signal's number through a pipe to a
 // thread, which requests the stop.

@@ -14,7 +14,7 @@
 #include <unistd.h>
 
 #include <tether/base/error.h>
-#include <tether/os/program.h>
+#include <tether/os/child_process.h>
 #include <tether/os/text_file.h>
 
 namespace tether::os {

@@ -2,7 +2,7 @@
 #include <cctype>
 #include <string_view>
 
-#include <tether/os/program.h>
+#include <tether/os/child_process.h>
 
 namespace tether::os {
 

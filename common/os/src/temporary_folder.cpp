@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include <tether/base/error.h>
-#include <tether/os/temporary_folder.h>
+#include <tether/os/text_file.h>
 
 namespace tether::os {
 namespace {

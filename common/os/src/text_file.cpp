@@ -23,7 +23,7 @@
 #include <unistd.h>
 
 #include <tether/base/error.h>
-#include <tether/base/suggest.h>
+#include <tether/base/text.h>
 #include <tether/os/file_descriptor.h>
 #include <tether/os/text_file.h>
 

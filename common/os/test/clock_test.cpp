@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <tether/os/clock.h>
+#include <tether/os/machine.h>
 
 namespace tether::os {
 namespace {

@@ -9,7 +9,7 @@
 
 #include <tether/base_testing/scratch_folder.h>
 #include <tether/os/interrupt.h>
-#include <tether/os/temporary_folder.h>
+#include <tether/os/text_file.h>
 
 /// A second signal that comes later: tests/system/run/interrupt_test.cpp.
 namespace tether::os {

@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <tether/os/child_process.h>
-#include <tether/os/program.h>
 
 namespace tether::os {
 namespace {

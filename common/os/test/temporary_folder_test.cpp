@@ -10,7 +10,7 @@
 
 #include <tether/base_testing/scratch_folder.h>
 #include <tether/base_testing/thrown_error.h>
-#include <tether/os/temporary_folder.h>
+#include <tether/os/text_file.h>
 
 namespace tether::os {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <tether/base/suggest.h>
+#include <tether/base/text.h>
 #include <tether/os/text_file.h>
 #include <tether/toml/table.h>
 

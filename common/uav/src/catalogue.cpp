@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include <tether/base/enum_name.h>
+#include <tether/base/text.h>
 #include <tether/uav/catalogue.h>
 
 namespace tether::uav {

@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include <tether/uav/joint.h>
+#include <tether/uav/setpoint.h>
 
 namespace tether::uav {
 

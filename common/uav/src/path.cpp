@@ -2,7 +2,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include <tether/base/text_table.h>
+#include <tether/base/text.h>
 #include <tether/base/units.h>
 #include <tether/uav/path.h>
 

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <tether/uav/joint.h>
+#include <tether/uav/setpoint.h>
 
 namespace tether::uav {
 namespace {

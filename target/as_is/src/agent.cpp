@@ -20,7 +20,7 @@
 #include <unistd.h>
 
 #include <tether/link/messages.h>
-#include <tether/os/clock.h>
+#include <tether/os/machine.h>
 
 namespace tether::as_is {
 namespace {

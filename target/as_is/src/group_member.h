@@ -8,7 +8,6 @@
 
 #include <sys/types.h>
 
-#include <tether/client/exec/group_events.h>
 #include <tether/client/exec/group_page.h>
 #include <tether/link/messages.h>
 

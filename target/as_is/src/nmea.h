@@ -3,7 +3,7 @@
 #include <string>
 
 #include <tether/base/time.h>
-#include <tether/uav/sensors/navigation.h>
+#include <tether/uav/catalogue.h>
 
 namespace tether::as_is {
 

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include <tether/os/clock.h>
+#include <tether/os/machine.h>
 
 namespace tether::as_is {
 namespace {

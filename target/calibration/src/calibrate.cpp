@@ -9,12 +9,9 @@
 
 #include <tether/base/result.h>
 #include <tether/base/version.h>
-#include <tether/calibration/calibrate.h>
 #include <tether/calibration/calibration.h>
-#include <tether/calibration/profile_text.h>
-#include <tether/calibration/sensor_table.h>
-#include <tether/calibration/whole_file.h>
-#include <tether/os/clock.h>
+#include <tether/calibration/characterize.h>
+#include <tether/os/machine.h>
 
 namespace tether::calibration {
 namespace {

@@ -1,9 +1,9 @@
 #include <limits>
 
 #include <tether/base/count_page.h>
-#include <tether/base/text_table.h>
+#include <tether/base/text.h>
 #include <tether/calibration/calibration.h>
-#include <tether/calibration/profile_text.h>
+#include <tether/calibration/characterize.h>
 #include <tether/toml/table.h>
 
 namespace tether::calibration {

@@ -3,8 +3,7 @@
 
 #include <tether/base/result.h>
 #include <tether/calibration/characterize.h>
-#include <tether/calibration/sensor_table.h>
-#include <tether/tasks/task_context.h>
+#include <tether/tasks/task.h>
 
 // Runs the task of Algorithm 1 for each chosen sensor and experiment, within one time limit per
 // sensor, and adds the statistics of the times to the outcome.

@@ -12,11 +12,9 @@
 #include <optional>
 #include <utility>
 
-#include <tether/base/text_table.h>
-#include <tether/calibration/profile_text.h>
+#include <tether/base/text.h>
+#include <tether/calibration/characterize.h>
 #include <tether/os/child_process.h>
-#include <tether/os/program.h>
-#include <tether/os/temporary_folder.h>
 #include <tether/os/text_file.h>
 #include <tether/toml/table.h>
 

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include <tether/calibration/calibrate.h>
 #include <tether/calibration/calibration.h>
 #include <tether/os/counted_program.h>
 

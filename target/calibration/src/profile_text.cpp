@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include <tether/base/version.h>
-#include <tether/calibration/profile_text.h>
+#include <tether/calibration/characterize.h>
 
 // Writes a profile as TOML. Names and descriptions can contain any bytes, so they are made valid
 // UTF-8 and escaped; passwords in URLs are removed.

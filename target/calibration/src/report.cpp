@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <limits>
 
-#include <tether/base/text_table.h>
-#include <tether/calibration/profile_text.h>
+#include <tether/base/text.h>
+#include <tether/calibration/characterize.h>
 
 // The tables and the target file of `tether-sut calibrate`: one machine's speed, the comparison of
 // two, and the doubts about both.

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <utility>
 
-#include <tether/base/text_table.h>
-#include <tether/calibration/sensor_table.h>
+#include <tether/base/text.h>
+#include <tether/calibration/characterize.h>
 #include <tether/stats/sample_statistics.h>
 
 namespace tether::calibration {

@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include <tether/base/result.h>
-#include <tether/base/text_table.h>
+#include <tether/base/text.h>
 #include <tether/stats/sample_statistics.h>
 
 // Compares two machines block by block: the factor of the medians, with an interval from order

@@ -5,7 +5,7 @@
 #include <unistd.h>
 
 #include <tether/base/error.h>
-#include <tether/calibration/whole_file.h>
+#include <tether/calibration/characterize.h>
 #include <tether/os/text_file.h>
 
 namespace tether::calibration {

@@ -9,13 +9,11 @@
 #include <optional>
 #include <utility>
 
-#include <tether/base/text_table.h>
+#include <tether/base/text.h>
 #include <tether/base/units.h>
-#include <tether/os/clock.h>
 #include <tether/os/counted_program.h>
+#include <tether/os/machine.h>
 #include <tether/vision/anchor_tracker.h>
-#include <tether/vision/relative_position.h>
-#include <tether/vision/runtime.h>
 
 // Computes the measured work: each round runs every block of the vision tasks on every embedded
 // image, and BlockClock adds the time of each block. The result of the whole step is compared with

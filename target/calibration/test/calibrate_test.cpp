@@ -5,7 +5,7 @@
 #include <toml++/toml.h>
 
 #include <tether/base_testing/scratch_folder.h>
-#include <tether/calibration/calibrate.h>
+#include <tether/calibration/calibration.h>
 
 namespace tether::calibration {
 namespace {

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <toml++/toml.h>
 
-#include <tether/calibration/profile_text.h>
+#include <tether/calibration/characterize.h>
 
 namespace tether::calibration {
 namespace {

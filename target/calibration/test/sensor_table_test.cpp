@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include <tether/calibration/sensor_table.h>
+#include <tether/calibration/characterize.h>
 
 namespace tether::calibration {
 namespace {

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <tether/base_testing/scratch_folder.h>
-#include <tether/calibration/whole_file.h>
+#include <tether/calibration/characterize.h>
 #include <tether/os/text_file.h>
 
 namespace tether::calibration {

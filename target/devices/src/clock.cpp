@@ -1,6 +1,6 @@
 #include "clock.h"
 
-#include <tether/os/clock.h>
+#include <tether/os/machine.h>
 
 namespace tether::devices {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include <tether/base/text_table.h>
+#include <tether/base/text.h>
 #include <tether/stats/sample_statistics.h>
 
 namespace tether::rig {

@@ -2,7 +2,7 @@
 
 #include <signal.h>
 
-#include <tether/rig/interruptible_vehicle.h>
+#include <tether/rig/device_arguments.h>
 
 namespace tether::rig {
 namespace {

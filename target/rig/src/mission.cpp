@@ -2,8 +2,7 @@
 #include <utility>
 
 #include <tether/rig/mission.h>
-#include <tether/tasks/task_context.h>
-#include <tether/tasks/task_sequence.h>
+#include <tether/tasks/task.h>
 
 namespace tether::rig {
 namespace {

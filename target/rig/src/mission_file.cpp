@@ -3,7 +3,6 @@
 
 #include <tether/mission/mission.h>
 #include <tether/rig/mission.h>
-#include <tether/rig/task_fields.h>
 #include <tether/toml/table.h>
 
 namespace tether::rig {

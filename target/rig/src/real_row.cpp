@@ -2,11 +2,11 @@
 
 #include <cmath>
 
-#include <tether/base/text_table.h>
+#include <tether/base/text.h>
 #include <tether/base/units.h>
-#include <tether/rig/real_row.h>
-#include <tether/tasks/task_context.h>
-#include <tether/vision/relative_position.h>
+#include <tether/rig/mission.h>
+#include <tether/tasks/task.h>
+#include <tether/vision/anchor_tracker.h>
 
 namespace tether::rig {
 namespace {

@@ -2,7 +2,7 @@
 #include <utility>
 
 #include <tether/base/units.h>
-#include <tether/rig/task_fields.h>
+#include <tether/rig/mission.h>
 
 // The arguments of each task as data. Helper functions make fields in the units of an argument
 // (degrees, seconds) that write to the options in SI units; one function per task lists its

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <tether/rig/interruptible_vehicle.h>
+#include <tether/rig/device_arguments.h>
 #include <tether/tasks/testing/planar_vehicle.h>
 
 namespace tether::rig {

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <tether/base/units.h>
-#include <tether/rig/real_row.h>
+#include <tether/rig/mission.h>
 #include <tether/tasks/testing/planar_vehicle.h>
 
 namespace tether::rig {

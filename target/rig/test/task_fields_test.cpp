@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <tether/base/units.h>
-#include <tether/rig/task_fields.h>
+#include <tether/rig/mission.h>
 
 namespace tether::rig {
 namespace {

@@ -10,7 +10,7 @@
 #include <unistd.h>
 
 #include <tether/client/exec/clock_page.h>
-#include <tether/client/exec/group_events.h>
+#include <tether/client/exec/group_page.h>
 #include <tether/client/simulated_vehicle.h>
 
 namespace tether::supervisor {

@@ -3,7 +3,7 @@
 
 #include <tether/base/units.h>
 #include <tether/tasks/mission_tasks.h>
-#include <tether/tasks/task_context.h>
+#include <tether/tasks/task.h>
 
 namespace tether::tasks {
 namespace {

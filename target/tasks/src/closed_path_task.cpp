@@ -7,7 +7,7 @@
 #include <utility>
 
 #include <tether/tasks/paper_tasks.h>
-#include <tether/tasks/task_context.h>
+#include <tether/tasks/task.h>
 
 // Algorithm 5 as a state machine: a rest before the start, in which the IMU's bias is measured and
 // the anchor located; four legs by dead reckoning; turning back to the start heading; a pause to

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include <tether/tasks/mission_tasks.h>
-#include <tether/tasks/task_context.h>
+#include <tether/tasks/task.h>
 
 namespace tether::tasks {
 namespace {

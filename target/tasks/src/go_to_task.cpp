@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include <tether/tasks/mission_tasks.h>
-#include <tether/tasks/task_context.h>
+#include <tether/tasks/task.h>
 
 namespace tether::tasks {
 namespace {

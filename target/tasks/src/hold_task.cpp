@@ -1,7 +1,7 @@
 #include "motion.h"
 
 #include <tether/tasks/mission_tasks.h>
-#include <tether/tasks/task_context.h>
+#include <tether/tasks/task.h>
 
 namespace tether::tasks {
 

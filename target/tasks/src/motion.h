@@ -11,8 +11,7 @@
 #include <tether/client/vehicle.h>
 #include <tether/tasks/paper_tasks.h>
 #include <tether/tasks/task.h>
-#include <tether/tasks/task_context.h>
-#include <tether/vision/relative_position.h>
+#include <tether/vision/anchor_tracker.h>
 
 /// The commands of the paper's listings, in the words of the listings.
 namespace tether::tasks {

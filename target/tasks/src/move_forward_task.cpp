@@ -6,7 +6,7 @@
 #include <utility>
 
 #include <tether/tasks/paper_tasks.h>
-#include <tether/tasks/task_context.h>
+#include <tether/tasks/task.h>
 
 namespace tether::tasks {
 

@@ -3,7 +3,7 @@
 
 #include <tether/stats/sample_statistics.h>
 #include <tether/tasks/paper_tasks.h>
-#include <tether/tasks/task_context.h>
+#include <tether/tasks/task.h>
 
 namespace tether::tasks {
 namespace {

@@ -3,7 +3,6 @@
 #include <nlohmann/json.hpp>
 
 #include <tether/tasks/task.h>
-#include <tether/tasks/task_context.h>
 
 namespace tether::tasks {
 

@@ -5,8 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include <tether/base/suggest.h>
-#include <tether/tasks/task_context.h>
+#include <tether/base/text.h>
+#include <tether/tasks/task.h>
 
 namespace tether::tasks {
 namespace {

@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <utility>
 
-#include <tether/tasks/task_sequence.h>
+#include <tether/tasks/task.h>
 
 namespace tether::tasks {
 namespace {

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include <tether/tasks/paper_tasks.h>
-#include <tether/tasks/task_context.h>
+#include <tether/tasks/task.h>
 #include <tether/tasks/testing/planar_vehicle.h>
 
 namespace tether::tasks {

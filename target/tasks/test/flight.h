@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 
 #include <tether/tasks/task.h>
-#include <tether/tasks/task_context.h>
 #include <tether/tasks/testing/planar_vehicle.h>
 
 namespace tether::tasks {

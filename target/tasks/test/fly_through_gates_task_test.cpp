@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 
 #include <tether/tasks/mission_tasks.h>
-#include <tether/tasks/task_context.h>
+#include <tether/tasks/task.h>
 #include <tether/vision/testing/synthetic_scene.h>
 
 namespace tether::tasks {

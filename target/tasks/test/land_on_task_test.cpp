@@ -7,7 +7,7 @@
 
 #include <tether/client/vehicle.h>
 #include <tether/tasks/mission_tasks.h>
-#include <tether/tasks/task_context.h>
+#include <tether/tasks/task.h>
 #include <tether/vision/testing/synthetic_scene.h>
 
 namespace tether::tasks {

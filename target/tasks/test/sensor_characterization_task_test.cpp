@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <tether/tasks/paper_tasks.h>
-#include <tether/tasks/task_context.h>
+#include <tether/tasks/task.h>
 #include <tether/tasks/testing/planar_vehicle.h>
 
 namespace tether::tasks {

@@ -2,7 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include <tether/tasks/paper_tasks.h>
-#include <tether/tasks/task_sequence.h>
+#include <tether/tasks/task.h>
 #include <tether/tasks/testing/planar_vehicle.h>
 
 namespace tether::tasks {

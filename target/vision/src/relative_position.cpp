@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include <tether/base/units.h>
-#include <tether/vision/relative_position.h>
+#include <tether/vision/anchor_tracker.h>
 
 namespace tether::vision {
 namespace {

@@ -2,7 +2,6 @@
 #include <opencv2/imgproc.hpp>
 
 #include <tether/vision/anchor_tracker.h>
-#include <tether/vision/runtime.h>
 
 namespace tether::vision {
 namespace {

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <tether/base/units.h>
-#include <tether/vision/relative_position.h>
+#include <tether/vision/anchor_tracker.h>
 #include <tether/vision/testing/synthetic_scene.h>
 
 namespace tether::vision {

@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include <opencv2/core.hpp>
 
-#include <tether/vision/runtime.h>
+#include <tether/vision/anchor_tracker.h>
 
 namespace tether::vision {
 namespace {

@@ -16,7 +16,6 @@
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 
-#include <tether/link/frame_socket.h>
 #include <tether/link/socket.h>
 #include <tether/sim_protocol/codec.h>
 

@@ -5,9 +5,9 @@
 #include <string>
 #include <string_view>
 
-#include <tether/link/frame_socket.h>
 #include <tether/link/messages.h>
 #include <tether/link/server.h>
+#include <tether/link/socket.h>
 
 namespace tether::system_test {
 

@@ -13,7 +13,7 @@
 #include <cstring>
 #include <utility>
 
-#include <tether/autopilot/built_in.h>
+#include <tether/autopilot/flight_controller.h>
 #include <tether/mavlink/frame.h>
 
 namespace tether::autopilot {

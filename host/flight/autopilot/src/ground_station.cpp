@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include <tether/autopilot/ground_station.h>
+#include <tether/autopilot/flight_controller.h>
 #include <tether/mavlink/frame.h>
 
 namespace tether::autopilot {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <tether/mavlink/frames.h>
+#include <tether/mavlink/frame.h>
 #include <tether/sim/geodesy.h>
 
 namespace tether::autopilot {

@@ -6,7 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include <tether/uav/joint.h>
 #include <tether/uav/setpoint.h>
 
 /// A gimbal by the angles that MAVLink has for it.

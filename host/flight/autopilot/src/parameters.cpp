@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include <tether/autopilot/built_in.h>
+#include <tether/autopilot/flight_controller.h>
 
 namespace tether::autopilot {
 namespace {

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <utility>
 
-#include <tether/autopilot/signing.h>
+#include <tether/autopilot/flight_controller.h>
 #include <tether/mavlink/frame.h>
 
 namespace tether::autopilot {

@@ -15,7 +15,7 @@
 
 #include <gtest/gtest.h>
 
-#include <tether/autopilot/built_in.h>
+#include <tether/autopilot/flight_controller.h>
 #include <tether/mavlink/frame.h>
 #include <tether/uav/multirotor.h>
 

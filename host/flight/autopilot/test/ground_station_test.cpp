@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <tether/autopilot/ground_station.h>
+#include <tether/autopilot/flight_controller.h>
 #include <tether/mavlink/frame.h>
 
 namespace tether::autopilot {

@@ -6,7 +6,7 @@
 #include <tuple>
 #include <variant>
 
-#include <tether/radio/link_budget.h>
+#include <tether/radio/medium.h>
 
 namespace tether::coordinator {
 namespace {

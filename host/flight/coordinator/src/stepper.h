@@ -16,7 +16,7 @@
 
 #include <tether/autopilot/flight_controller.h>
 #include <tether/base/error.h>
-#include <tether/radio/link_budget.h>
+#include <tether/radio/medium.h>
 #include <tether/record/messages.h>
 #include <tether/sim/simulator.h>
 #include <tether/sync/least_tree.h>

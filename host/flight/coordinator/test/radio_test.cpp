@@ -9,7 +9,7 @@
 #include <gmock/gmock.h>
 
 #include <tether/base/random.h>
-#include <tether/radio/link_budget.h>
+#include <tether/radio/medium.h>
 
 // Messages between UAVs: the rules of time hold for them as for samples and commands.
 namespace tether::coordinator {

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <tether/radio/link_budget.h>
+#include <tether/radio/medium.h>
 
 namespace tether::radio {
 namespace {

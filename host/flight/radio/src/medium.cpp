@@ -7,8 +7,8 @@
 #include <tuple>
 #include <utility>
 
-#include <tether/base/enum_name.h>
 #include <tether/base/random.h>
+#include <tether/base/text.h>
 #include <tether/radio/medium.h>
 
 namespace tether::radio {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <tether/radio/link_budget.h>
+#include <tether/radio/medium.h>
 
 namespace tether::radio {
 namespace {

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include <tether/base/error.h>
-#include <tether/scenario/decidable.h>
+#include <tether/scenario/scenario.h>
 
 namespace tether::scenario {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include <tether/base/suggest.h>
+#include <tether/base/text.h>
 #include <tether/scenario/scenario.h>
 
 namespace tether::scenario {

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include <tether/base/error.h>
-#include <tether/base/suggest.h>
+#include <tether/base/text.h>
 #include <tether/scenario/scenario.h>
 
 // Each sensor of the world is wrapped in a LayeredSensor, to which the layers are applied in order:

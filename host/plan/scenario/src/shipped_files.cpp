@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include <tether/base/error.h>
-#include <tether/base/suggest.h>
+#include <tether/base/text.h>
 #include <tether/os/text_file.h>
 #include <tether/scenario/shipped_files.h>
 #include <tether/toml/table.h>

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include <tether/base/error.h>
-#include <tether/scenario/slowness.h>
+#include <tether/scenario/scenario.h>
 
 namespace tether::scenario {
 namespace {

@@ -8,10 +8,10 @@
 #include <fmt/format.h>
 
 #include <tether/base/random.h>
-#include <tether/base/suggest.h>
+#include <tether/base/text.h>
 #include <tether/scenario/scenario.h>
 #include <tether/sim/bodies.h>
-#include <tether/sim/clearance.h>
+#include <tether/sim/contacts.h>
 
 namespace tether::scenario {
 namespace {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <tether/base_testing/thrown_error.h>
-#include <tether/scenario/decidable.h>
+#include <tether/scenario/scenario.h>
 
 namespace tether::scenario {
 namespace {

@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <tether/sim/range_rays.h>
+#include <tether/sim/bodies.h>
 
 namespace tether::scenario {
 namespace {

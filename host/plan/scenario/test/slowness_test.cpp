@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <tether/base_testing/thrown_error.h>
-#include <tether/scenario/slowness.h>
+#include <tether/scenario/scenario.h>
 
 namespace tether::scenario {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <tether/mission/condition.h>
+#include <tether/mission/mission.h>
 
 namespace tether::judge {
 

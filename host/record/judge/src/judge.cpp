@@ -11,7 +11,7 @@
 
 #include <fmt/format.h>
 
-#include <tether/base/text_table.h>
+#include <tether/base/text.h>
 #include <tether/judge/judge.h>
 #include <tether/stl/robustness.h>
 

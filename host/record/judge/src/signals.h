@@ -5,9 +5,8 @@
 #include <string>
 #include <utility>
 
-#include <tether/mission/condition.h>
+#include <tether/mission/mission.h>
 #include <tether/record/reader.h>
-#include <tether/record/tracks.h>
 #include <tether/stl/robustness.h>
 
 namespace tether::judge {

@@ -9,7 +9,7 @@
 #include <string>
 #include <type_traits>
 
-#include <tether/record/in_memory.h>
+#include <tether/record/writer.h>
 
 // A text is kept as UTF-8 and a number that is not finite as NaN, as they are read from a file.
 namespace tether::record {

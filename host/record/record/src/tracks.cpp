@@ -2,8 +2,8 @@
 #include <cmath>
 #include <initializer_list>
 
-#include <tether/record/tracks.h>
-#include <tether/uav/joint.h>
+#include <tether/record/reader.h>
+#include <tether/uav/setpoint.h>
 
 namespace tether::record {
 namespace {

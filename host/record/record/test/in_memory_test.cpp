@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include <tether/record/in_memory.h>
+#include <tether/record/writer.h>
 #include <tether/record_testing/canonical.h>
 
 namespace tether::record {

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <tether/base/units.h>
-#include <tether/record/tracks.h>
+#include <tether/record/reader.h>
 
 namespace tether::record {
 namespace {

@@ -3,10 +3,9 @@
 #include <fmt/format.h>
 
 #include <tether/base/random.h>
-#include <tether/base/text_table.h>
+#include <tether/base/text.h>
 #include <tether/stats/sample_statistics.h>
-#include <tether/timing/change.h>
-#include <tether/timing/stage_table.h>
+#include <tether/timing/timing.h>
 
 namespace tether::timing {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <tether/timing/stage_table.h>
+#include <tether/timing/timing.h>
 
 namespace tether::timing {
 namespace {

@@ -6,8 +6,7 @@
 #include <fmt/format.h>
 
 #include <tether/base/text.h>
-#include <tether/base/text_table.h>
-#include <tether/os/program.h>
+#include <tether/os/child_process.h>
 #include <tether/report/verdict.h>
 
 // What to do next, in sentences.

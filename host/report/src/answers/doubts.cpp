@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 
 #include <tether/base/text.h>
-#include <tether/base/text_table.h>
 
 namespace tether::report {
 namespace {

@@ -13,9 +13,7 @@
 #include <fmt/format.h>
 
 #include <tether/base/text.h>
-#include <tether/base/text_table.h>
-#include <tether/campaign/copies.h>
-#include <tether/campaign/statistics.h>
+#include <tether/campaign/campaign_results.h>
 #include <tether/energy/meter.h>
 #include <tether/report/size_report.h>
 

@@ -12,7 +12,6 @@
 #include <fmt/format.h>
 
 #include <tether/base/text.h>
-#include <tether/base/text_table.h>
 #include <tether/report/verdict.h>
 
 // The words of an answer.

@@ -11,8 +11,7 @@
 
 #include <tether/base/text.h>
 #include <tether/campaign/campaign_plan.h>
-#include <tether/campaign/copies.h>
-#include <tether/campaign/statistics.h>
+#include <tether/campaign/campaign_results.h>
 #include <tether/report/size_report.h>
 
 namespace tether::report {

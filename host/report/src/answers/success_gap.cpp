@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include <tether/sizing/by_levels.h>
+#include <tether/sizing/sizing.h>
 
 namespace tether::report {
 namespace {

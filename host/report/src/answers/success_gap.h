@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include <tether/campaign/statistics.h>
+#include <tether/campaign/campaign_results.h>
 #include <tether/report/size_report.h>
 
 namespace tether::report {

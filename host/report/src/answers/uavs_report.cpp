@@ -8,8 +8,8 @@
 
 #include <tether/base/text.h>
 #include <tether/campaign/campaign_plan.h>
-#include <tether/campaign/copies.h>
-#include <tether/os/program.h>
+#include <tether/campaign/campaign_results.h>
+#include <tether/os/child_process.h>
 #include <tether/report/size_report.h>
 
 namespace tether::report {

@@ -11,10 +11,10 @@
 
 #include <tether/base/error.h>
 #include <tether/campaign/campaign_plan.h>
-#include <tether/campaign/copies.h>
+#include <tether/campaign/campaign_results.h>
 #include <tether/report/size_report.h>
 #include <tether/report/verdict.h>
-#include <tether/sizing/by_levels.h>
+#include <tether/sizing/sizing.h>
 
 namespace tether::report {
 namespace {

@@ -12,9 +12,9 @@
 
 #include <tether/campaign/campaign_plan.h>
 #include <tether/campaign/result.h>
-#include <tether/os/clock.h>
+#include <tether/os/machine.h>
 #include <tether/report/junit.h>
-#include <tether/report/timing_page.h>
+#include <tether/report/report.h>
 #include <tether/report/verdict.h>
 
 namespace tether::report {

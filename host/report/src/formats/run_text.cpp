@@ -6,10 +6,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <tether/base/text_table.h>
-#include <tether/os/program.h>
-#include <tether/report/page.h>
-#include <tether/report/run_text.h>
+#include <tether/base/text.h>
+#include <tether/os/child_process.h>
+#include <tether/report/report.h>
 #include <tether/report/verdict.h>
 
 // The summary of a run: labels and texts, aligned in two columns.

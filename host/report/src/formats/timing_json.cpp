@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <tether/report/timing_page.h>
+#include <tether/report/report.h>
 
 namespace tether::report {
 namespace {

@@ -10,9 +10,7 @@
 
 #include <fmt/format.h>
 
-#include <tether/report/page.h>
 #include <tether/report/report.h>
-#include <tether/report/sweep.h>
 #include <tether/report/verdict.h>
 
 // The page of a campaign: the answers with a picture and problems on top, then a section for each

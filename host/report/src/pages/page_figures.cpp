@@ -12,7 +12,7 @@
 #include <tether/base/error.h>
 #include <tether/campaign/campaign_plan.h>
 #include <tether/report/camera_frame.h>
-#include <tether/report/gnuplot.h>
+#include <tether/report/plots.h>
 
 namespace tether::report {
 namespace {

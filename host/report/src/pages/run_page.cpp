@@ -12,7 +12,6 @@
 #include <fmt/format.h>
 
 #include <tether/base/error.h>
-#include <tether/report/page.h>
 #include <tether/report/report.h>
 #include <tether/report/verdict.h>
 

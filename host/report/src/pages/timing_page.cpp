@@ -9,10 +9,10 @@
 
 #include <fmt/format.h>
 
-#include <tether/base/text_table.h>
-#include <tether/os/program.h>
+#include <tether/base/text.h>
+#include <tether/os/child_process.h>
+#include <tether/report/report.h>
 #include <tether/report/table.h>
-#include <tether/report/timing_page.h>
 
 namespace tether::report {
 namespace {

@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include <tether/record/png.h>
-#include <tether/record/tracks.h>
+#include <tether/record/reader.h>
 #include <tether/report/camera_frame.h>
 
 // The region of interest (ROI) that the SUT reported for an image, and the true one, are searched

@@ -7,8 +7,7 @@
 
 #include <tether/base/error.h>
 #include <tether/os/child_process.h>
-#include <tether/os/program.h>
-#include <tether/report/gnuplot.h>
+#include <tether/report/plots.h>
 
 namespace tether::report {
 namespace {

@@ -12,7 +12,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <tether/record/tracks.h>
+#include <tether/record/reader.h>
 #include <tether/uav/math.h>
 
 // The paths of several runs in one plot. Each run is reduced to a Way (path, yaw, dead reckoning).

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include <tether/campaign/copies.h>
+#include <tether/campaign/campaign_results.h>
 #include <tether/report/report.h>
 #include <tether/report/verdict.h>
 #include <tether/stats/sample_statistics.h>

@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include <tether/report/report.h>
-#include <tether/report/sweep.h>
 
 // The tables for people. A scenario has one in the paper's form with notes on each trial that is
 // missing or special, one with all statistics, one that compares its conditions, and one on the

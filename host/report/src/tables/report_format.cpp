@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include <tether/base/text_table.h>
+#include <tether/base/text.h>
 
 namespace tether::report {
 

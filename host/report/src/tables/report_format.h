@@ -4,8 +4,8 @@
 #include <string>
 #include <string_view>
 
+#include <tether/campaign/campaign_results.h>
 #include <tether/campaign/result.h>
-#include <tether/campaign/statistics.h>
 #include <tether/report/table.h>
 
 /// Formats of the numbers and headings of a report.

@@ -7,9 +7,9 @@
 
 #include <fmt/format.h>
 
-#include <tether/campaign/copies.h>
-#include <tether/report/sweep.h>
-#include <tether/sizing/by_levels.h>
+#include <tether/campaign/campaign_results.h>
+#include <tether/report/report.h>
+#include <tether/sizing/sizing.h>
 
 // Each point of a sweep is a scenario's results. A series takes those points that differ in the
 // key of the x axis only. A place on that axis is the key's value or, if one of the values is no

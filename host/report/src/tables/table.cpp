@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include <tether/base/text_table.h>
+#include <tether/base/text.h>
 #include <tether/report/table.h>
 
 // Three forms of a table. Text is aligned by the widths of all columns; Markdown and CSV have one

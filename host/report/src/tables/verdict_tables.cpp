@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <tether/base/text_table.h>
+#include <tether/base/text.h>
 #include <tether/report/verdict.h>
 
 // The tables below an answer: what was compared, and where the computing time goes.

@@ -8,9 +8,8 @@
 
 #include <tether/os/text_file.h>
 #include <tether/report/junit.h>
-#include <tether/report/page.h>
+#include <tether/report/report.h>
 #include <tether/report/size_report.h>
-#include <tether/report/timing_page.h>
 
 namespace tether::report {
 namespace {

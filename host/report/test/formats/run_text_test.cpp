@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 
 #include <tether/base_testing/scratch_folder.h>
-#include <tether/report/run_text.h>
+#include <tether/report/report.h>
 
 namespace tether::report {
 namespace {

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include <tether/report/timing_page.h>
+#include <tether/report/report.h>
 
 namespace tether::report {
 namespace {

@@ -9,7 +9,7 @@
 
 #include <tether/record/png.h>
 #include <tether/record/writer.h>
-#include <tether/report/page.h>
+#include <tether/report/report.h>
 
 namespace tether::report {
 namespace {

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <tether/report/timing_page.h>
+#include <tether/report/report.h>
 
 namespace tether::report {
 namespace {

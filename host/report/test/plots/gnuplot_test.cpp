@@ -8,7 +8,7 @@
 
 #include <tether/base_testing/scratch_folder.h>
 #include <tether/base_testing/thrown_error.h>
-#include <tether/report/gnuplot.h>
+#include <tether/report/plots.h>
 
 namespace tether::report {
 namespace {

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <tether/report/gnuplot.h>
+#include <tether/report/plots.h>
 
 namespace tether::report {
 namespace {

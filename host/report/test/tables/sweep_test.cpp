@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <tether/report/sweep.h>
+#include <tether/report/report.h>
 
 namespace tether::report {
 namespace {

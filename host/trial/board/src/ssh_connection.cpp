@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 #include <tether/base/error.h>
-#include <tether/board/ssh_connection.h>
+#include <tether/board/board.h>
 #include <tether/os/child_process.h>
 #include <tether/os/text_file.h>
 

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include <tether/os/program.h>
+#include <tether/os/child_process.h>
 
 namespace tether::board {
 

@@ -6,7 +6,6 @@
 
 #include <tether/base/error.h>
 #include <tether/board/target_probe.h>
-#include <tether/board/target_readings.h>
 #include <tether/os/child_process.h>
 
 namespace tether::board {

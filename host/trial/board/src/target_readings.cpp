@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <tether/board/target_readings.h>
+#include <tether/board/target_probe.h>
 
 /// One function per property of a machine makes its finding from the readings; evaluate() lists
 /// them. run_warnings() applies some of them to the readings before and after a run.

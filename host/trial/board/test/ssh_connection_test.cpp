@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <tether/base_testing/thrown_error.h>
-#include <tether/board/ssh_connection.h>
+#include <tether/board/board.h>
 
 namespace tether::board {
 namespace {

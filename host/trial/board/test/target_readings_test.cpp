@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <tether/board/target_readings.h>
+#include <tether/board/target_probe.h>
 
 /// With the output of the probe on real machines.
 namespace tether::board {

@@ -8,7 +8,6 @@
 #include <tether/base/text.h>
 #include <tether/campaign/campaign_folder.h>
 #include <tether/campaign/folder_claim.h>
-#include <tether/os/temporary_folder.h>
 #include <tether/os/text_file.h>
 
 namespace tether::campaign {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <tether/campaign/campaign_results.h>
-#include <tether/campaign/copies.h>
 
 namespace tether::campaign {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include <tether/campaign/copies.h>
+#include <tether/campaign/campaign_results.h>
 
 namespace tether::campaign {
 namespace {

@@ -8,7 +8,7 @@
 
 #include <tether/base/units.h>
 #include <tether/campaign/metrics.h>
-#include <tether/record/tracks.h>
+#include <tether/record/reader.h>
 
 /// The SUT's own estimates against ground truth (paper, Tables II and V): each metric reads the
 /// last annotation of a topic, finds the image from which it was made, and compares it with the

@@ -1,7 +1,7 @@
 #include "fields.h"
 
 #include <tether/base/error.h>
-#include <tether/base/json_depth.h>
+#include <tether/base/text.h>
 
 namespace tether::campaign {
 

@@ -10,8 +10,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <tether/base/text_table.h>
-#include <tether/campaign/copies.h>
+#include <tether/base/text.h>
+#include <tether/campaign/campaign_results.h>
 #include <tether/campaign/result.h>
 
 // A result is assembled from the scenario (what was asked for), the record (what happened) and what

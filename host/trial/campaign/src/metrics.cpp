@@ -9,7 +9,7 @@
 
 #include <tether/base/units.h>
 #include <tether/campaign/metrics.h>
-#include <tether/record/tracks.h>
+#include <tether/record/reader.h>
 #include <tether/uav/math.h>
 
 // The metrics of time and bearing, what all metrics share, and the table of all kinds.

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include <tether/campaign/metrics.h>
-#include <tether/record/tracks.h>
+#include <tether/record/reader.h>
 
 /// The UAV's final position against the intended one (paper, Tables IV and V).
 namespace tether::campaign {

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include <tether/base/error.h>
-#include <tether/base/json_depth.h>
+#include <tether/base/text.h>
 #include <tether/campaign/result.h>
 #include <tether/os/text_file.h>
 

@@ -7,7 +7,7 @@
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 
-#include <tether/campaign/statistics.h>
+#include <tether/campaign/campaign_results.h>
 
 // Means with Student's and Welch's intervals, the Mann-Whitney test, exact for small samples, and
 // Fisher's.

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <tether/base/random.h>
-#include <tether/campaign/statistics.h>
+#include <tether/campaign/campaign_results.h>
 
 namespace tether::campaign {
 namespace {

@@ -10,7 +10,7 @@
 
 #include <tether/base/error.h>
 #include <tether/campaign/campaign_plan.h>
-#include <tether/os/program.h>
+#include <tether/os/child_process.h>
 #include <tether/runner/campaign_trials.h>
 #include <tether/sim_sdf/load_world.h>
 

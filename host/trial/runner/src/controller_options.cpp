@@ -6,10 +6,8 @@
 
 #include <fmt/format.h>
 
-#include <tether/autopilot/built_in.h>
 #include <tether/autopilot/external.h>
-#include <tether/autopilot/ground_station.h>
-#include <tether/autopilot/signing.h>
+#include <tether/autopilot/flight_controller.h>
 #include <tether/base/error.h>
 
 namespace tether::runner {

@@ -7,12 +7,10 @@
 #include <fmt/format.h>
 
 #include <tether/base/error.h>
-#include <tether/base/suggest.h>
 #include <tether/base/text.h>
 #include <tether/os/child_process.h>
 #include <tether/os/counted_program.h>
 #include <tether/os/machine.h>
-#include <tether/os/program.h>
 
 namespace tether::runner {
 

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <utility>
 
-#include <tether/board/target_readings.h>
-#include <tether/os/clock.h>
+#include <tether/board/target_probe.h>
+#include <tether/os/machine.h>
 #include <tether/os/process_table.h>
 
 namespace tether::runner {

@@ -6,7 +6,7 @@
 
 #include <tether/base/error.h>
 #include <tether/link/messages.h>
-#include <tether/timing/stage_table.h>
+#include <tether/timing/timing.h>
 
 namespace tether::runner {
 namespace {

@@ -5,11 +5,11 @@
 #include <tether/base/error.h>
 #include <tether/campaign/campaign_folder.h>
 #include <tether/os/machine.h>
-#include <tether/os/temporary_folder.h>
-#include <tether/runner/shard_flights.h>
+#include <tether/os/text_file.h>
 #include <tether/runner/trial.h>
 #include <tether/runner/trial_request.h>
-#include <tether/shards/collect.h>
+#include <tether/runner/trial_server.h>
+#include <tether/shards/shard.h>
 
 namespace tether::runner {
 namespace {

@@ -3,8 +3,7 @@
 #include <algorithm>
 
 #include <tether/base/error.h>
-#include <tether/scenario/decidable.h>
-#include <tether/scenario/slowness.h>
+#include <tether/scenario/scenario.h>
 
 namespace tether::runner {
 std::optional<campaign::Sizing> sizing_of(const TrialSpec& spec,

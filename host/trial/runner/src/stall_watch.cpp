@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include <tether/os/clock.h>
+#include <tether/os/machine.h>
 #include <tether/os/process_table.h>
 
 namespace tether::runner {

@@ -8,7 +8,6 @@
 #include <fmt/ranges.h>
 
 #include <tether/os/child_process.h>
-#include <tether/os/program.h>
 
 namespace tether::runner {
 

@@ -19,9 +19,8 @@
 #include <tether/base/error.h>
 #include <tether/base/version.h>
 #include <tether/board/board.h>
-#include <tether/os/clock.h>
+#include <tether/os/child_process.h>
 #include <tether/os/machine.h>
-#include <tether/os/program.h>
 #include <tether/os/text_file.h>
 #include <tether/runner/trial.h>
 #include <tether/runner/trial_folder.h>

@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <tether/autopilot/ground_station.h>
+#include <tether/autopilot/flight_controller.h>
 #include <tether/base/error.h>
 #include <tether/base/version.h>
 #include <tether/board/target_probe.h>

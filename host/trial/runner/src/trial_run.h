@@ -17,9 +17,8 @@
 
 #include <tether/board/board.h>
 #include <tether/coordinator/coordinator.h>
-#include <tether/os/temporary_folder.h>
-#include <tether/record/in_memory.h>
-#include <tether/runner/back_end.h>
+#include <tether/os/text_file.h>
+#include <tether/record/writer.h>
 #include <tether/runner/trial.h>
 
 namespace tether::runner {

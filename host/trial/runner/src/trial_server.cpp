@@ -11,7 +11,6 @@
 #include <tether/base/error.h>
 #include <tether/os/child_process.h>
 #include <tether/os/file_descriptor.h>
-#include <tether/os/program.h>
 #include <tether/os/text_file.h>
 #include <tether/runner/trial_server.h>
 

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include <tether/base/warning.h>
+#include <tether/base/error.h>
 
 namespace tether::runner {
 

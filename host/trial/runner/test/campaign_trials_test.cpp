@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <tether/base_testing/thrown_error.h>
-#include <tether/os/program.h>
+#include <tether/os/child_process.h>
 #include <tether/runner/campaign_trials.h>
 #include <tether/runner/trial_server.h>
 #include <tether/sim_sdf/load_world.h>

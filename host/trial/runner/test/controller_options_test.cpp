@@ -7,9 +7,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <tether/autopilot/built_in.h>
 #include <tether/autopilot/external.h>
-#include <tether/autopilot/ground_station.h>
+#include <tether/autopilot/flight_controller.h>
 #include <tether/base_testing/thrown_error.h>
 #include <tether/sim_testing/fake_simulator.h>
 

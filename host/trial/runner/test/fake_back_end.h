@@ -8,7 +8,7 @@
 
 #include <tether/base/error.h>
 #include <tether/base_testing/scratch_folder.h>
-#include <tether/runner/back_end.h>
+#include <tether/runner/trial.h>
 #include <tether/scenario/scenario.h>
 #include <tether/sim_testing/fake_simulator.h>
 

@@ -12,7 +12,7 @@
 
 #include <tether/base_testing/scratch_folder.h>
 #include <tether/base_testing/thrown_error.h>
-#include <tether/os/program.h>
+#include <tether/os/child_process.h>
 
 namespace tether::runner {
 namespace {

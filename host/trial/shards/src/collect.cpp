@@ -4,7 +4,7 @@
 #include <tether/campaign/campaign_folder.h>
 #include <tether/campaign/campaign_plan.h>
 #include <tether/os/text_file.h>
-#include <tether/shards/collect.h>
+#include <tether/shards/shard.h>
 
 namespace tether::shards {
 namespace {

@@ -6,9 +6,9 @@
 #include <fmt/format.h>
 
 #include <tether/base/error.h>
-#include <tether/base/suggest.h>
-#include <tether/os/program.h>
-#include <tether/shards/engine.h>
+#include <tether/base/text.h>
+#include <tether/os/child_process.h>
+#include <tether/shards/engine_flights.h>
 #include <tether/toml/table.h>
 
 namespace tether::shards {

@@ -11,8 +11,7 @@
 #include <tether/base/text.h>
 #include <tether/campaign/campaign_folder.h>
 #include <tether/os/child_process.h>
-#include <tether/os/clock.h>
-#include <tether/os/program.h>
+#include <tether/os/machine.h>
 #include <tether/os/text_file.h>
 #include <tether/shards/engine_flights.h>
 

@@ -10,8 +10,8 @@
 #include <tether/base/error.h>
 #include <tether/campaign/campaign_folder.h>
 #include <tether/os/file_descriptor.h>
-#include <tether/os/temporary_folder.h>
-#include <tether/shards/collect.h>
+#include <tether/os/text_file.h>
+#include <tether/shards/shard.h>
 
 // A copy under a name of its own, flushed, then one rename: it is atomic, and fails if the new name
 // is a folder with content.

@@ -7,7 +7,6 @@
 
 #include <tether/base/error.h>
 #include <tether/campaign/campaign_folder.h>
-#include <tether/os/temporary_folder.h>
 #include <tether/os/text_file.h>
 #include <tether/shards/shard.h>
 

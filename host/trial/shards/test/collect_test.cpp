@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <tether/base_testing/thrown_error.h>
-#include <tether/shards/collect.h>
+#include <tether/shards/shard.h>
 
 namespace tether::shards {
 namespace {

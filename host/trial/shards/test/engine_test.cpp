@@ -3,7 +3,7 @@
 
 #include <tether/base_testing/scratch_folder.h>
 #include <tether/base_testing/thrown_error.h>
-#include <tether/shards/engine.h>
+#include <tether/shards/engine_flights.h>
 
 namespace tether::shards {
 namespace {

@@ -10,7 +10,7 @@
 #include <tether/base_testing/scratch_folder.h>
 #include <tether/campaign/campaign_folder.h>
 #include <tether/campaign_testing/sample_campaign.h>
-#include <tether/shards/collect.h>
+#include <tether/shards/shard.h>
 
 namespace tether::shards {
 

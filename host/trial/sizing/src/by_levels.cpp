@@ -5,7 +5,7 @@
 
 #include <boost/math/distributions/binomial.hpp>
 
-#include <tether/sizing/by_levels.h>
+#include <tether/sizing/sizing.h>
 
 namespace tether::sizing {
 namespace {

@@ -2,8 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <tether/sizing/by_levels.h>
-#include <tether/sizing/by_uavs.h>
+#include <tether/sizing/sizing.h>
 
 namespace tether::sizing {
 namespace {

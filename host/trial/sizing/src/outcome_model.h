@@ -3,7 +3,7 @@
 #include <array>
 #include <cstddef>
 
-#include <tether/sizing/search.h>
+#include <tether/sizing/sizing.h>
 
 /// What a flight says about a curve, given one middle, width and scale of the margin.
 namespace tether::sizing {

@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include <tether/sizing/search.h>
+#include <tether/sizing/sizing.h>
 
 namespace tether::sizing {
 namespace {

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include <tether/base/random.h>
-#include <tether/sizing/success_curve.h>
+#include <tether/sizing/sizing.h>
 
 // A posterior is a weight for each curve of the grid and each scale of the margin.
 namespace tether::sizing {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <tether/sizing/by_levels.h>
+#include <tether/sizing/sizing.h>
 
 namespace tether::sizing {
 namespace {

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <tether/base/random.h>
-#include <tether/sizing/by_uavs.h>
+#include <tether/sizing/sizing.h>
 
 namespace tether::sizing {
 namespace {

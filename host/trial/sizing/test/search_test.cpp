@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <tether/sizing/by_uavs.h>
-#include <tether/sizing/search.h>
 #include <tether/sizing/sizing.h>
 
 namespace tether::sizing {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <tether/base/random.h>
-#include <tether/sizing/success_curve.h>
+#include <tether/sizing/sizing.h>
 
 namespace tether::sizing {
 namespace {

@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 
 #include <tether/sim/bodies.h>
-#include <tether/sim/clearance.h>
+#include <tether/sim/contacts.h>
 
 namespace tether::sim {
 namespace {

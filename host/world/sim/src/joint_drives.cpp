@@ -1,4 +1,4 @@
-#include <tether/sim/joint_drives.h>
+#include <tether/sim/bodies.h>
 
 namespace tether::sim {
 

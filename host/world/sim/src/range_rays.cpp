@@ -2,7 +2,7 @@
 #include <cmath>
 #include <numbers>
 
-#include <tether/sim/range_rays.h>
+#include <tether/sim/bodies.h>
 
 namespace tether::sim {
 namespace {

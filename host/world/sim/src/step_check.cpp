@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include <tether/sim/step_check.h>
+#include <tether/sim/simulator.h>
 
 namespace tether::sim {
 namespace {

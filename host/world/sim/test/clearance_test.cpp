@@ -7,7 +7,7 @@
 
 #include <tether/base/random.h>
 #include <tether/sim/bodies.h>
-#include <tether/sim/clearance.h>
+#include <tether/sim/contacts.h>
 #include <tether/sim_testing/test_worlds.h>
 
 namespace tether::sim {

@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include <tether/sim/joint_drives.h>
+#include <tether/sim/bodies.h>
 #include <tether/sim_testing/test_worlds.h>
 
 namespace tether::sim {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <tether/sim/range_rays.h>
+#include <tether/sim/bodies.h>
 
 namespace tether::sim {
 namespace {

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <tether/base_testing/thrown_error.h>
-#include <tether/sim/step_check.h>
+#include <tether/sim/simulator.h>
 
 namespace tether::sim {
 namespace {

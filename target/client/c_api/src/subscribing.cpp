@@ -5,7 +5,7 @@
 #include <memory>
 #include <utility>
 
-#include <tether/client/subscription.h>
+#include <tether/client/vehicle.h>
 
 using namespace tether::c_api;
 

@@ -11,7 +11,7 @@
 #include <unistd.h>
 
 #include <tether/client/exec/clock_page.h>
-#include <tether/os/clock.h>
+#include <tether/os/machine.h>
 
 namespace tether::client {
 namespace {

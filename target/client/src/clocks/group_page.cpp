@@ -13,8 +13,8 @@
 #include <unistd.h>
 
 #include <tether/client/exec/group_page.h>
-#include <tether/os/clock.h>
 #include <tether/os/file_descriptor.h>
+#include <tether/os/machine.h>
 
 namespace tether::client {
 namespace {

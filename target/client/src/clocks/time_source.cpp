@@ -13,7 +13,7 @@
 #include <pthread.h>
 
 #include <tether/client/sut_clock.h>
-#include <tether/os/clock.h>
+#include <tether/os/machine.h>
 #include <tether/os/process_table.h>
 
 namespace tether::client {

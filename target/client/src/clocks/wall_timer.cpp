@@ -1,6 +1,6 @@
 #include "clocks/wall_timer.h"
 
-#include <tether/os/clock.h>
+#include <tether/os/machine.h>
 
 namespace tether::client {
 namespace {

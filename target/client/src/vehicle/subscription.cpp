@@ -8,7 +8,7 @@
 #include <thread>
 #include <utility>
 
-#include <tether/client/subscription.h>
+#include <tether/client/vehicle.h>
 
 namespace tether::client {
 namespace {

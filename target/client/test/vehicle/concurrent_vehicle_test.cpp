@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 #include <tether/client/simulated_vehicle.h>
-#include <tether/client/subscription.h>
+#include <tether/client/vehicle.h>
 
 namespace tether::client {
 namespace {

@@ -8,7 +8,6 @@
 #include <tether/base/result.h>
 #include <tether/link/messages.h>
 #include <tether/wire/fields.h>
-#include <tether/wire/frame_pieces.h>
 
 /// Frames: a little-endian uint32 length, then that many bytes of FlatBuffer (size-prefixed, root
 /// `Envelope` of `schema/link.fbs`).

@@ -4,6 +4,9 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <system_error>
@@ -125,5 +128,90 @@ Accepted accept_tcp(int listening);
 
 /// "the connection to HOST:PORT was lost: REASON".
 Failure lost(const std::string& peer, const std::error_code& error);
+
+/// Splits a byte stream into frames. The socket's bytes are received directly into it, as many as
+/// there are, so that a small frame costs one system call. It grows to the largest frame and keeps
+/// that size. The length in a header is checked against the limit before memory is allocated.
+///
+///   receive into space(), commit(n), then call next() until it returns an empty span.
+class FrameBuffer {
+ public:
+  /// `limit`: the largest frame that is accepted [bytes].
+  explicit FrameBuffer(std::uint32_t limit);
+  /// From the next frame on.
+  void set_limit(std::uint32_t limit) { limit_ = limit; }
+
+  /// Space for the next bytes; never empty, and enough for the rest of a frame that has begun.
+  /// Invalidates the frames that next() returned.
+  std::span<std::uint8_t> space();
+  /// The first `count` bytes of space() have been received.
+  void commit(std::size_t count) { end_ += count; }
+
+  /// The next whole frame, length included; empty if it has not arrived completely. Fails with
+  /// kProtocol if its length is not allowed; the stream cannot be used after that.
+  Result<std::span<const std::uint8_t>> next();
+
+  /// Missing bytes of a frame whose header has arrived; 0 if there is none.
+  std::size_t missing() const { return frame_bytes_ > size() ? frame_bytes_ - size() : 0; }
+  /// Those of it that have arrived; 0 if there is none.
+  std::size_t arrived() const { return missing() > 0 ? size() : 0; }
+
+ private:
+  std::size_t size() const { return end_ - begin_; }
+  void make_room(std::size_t bytes);
+
+  std::uint32_t limit_;
+  std::size_t capacity_;
+  std::unique_ptr<std::uint8_t[]> data_;  // not initialised: most of it is never touched
+  std::size_t begin_ = 0;
+  std::size_t end_ = 0;
+  std::size_t frame_bytes_ = 0;  // of the frame at begin_; 0: not known yet
+};
+
+/// Whole frames of any content over a connected, blocking stream socket of any family. Failures
+/// name the other end `peer`. One thread sends and one receives at a time; `close` is thread-safe.
+class FrameSocket {
+ public:
+  static constexpr std::chrono::milliseconds kSlowPeriod{100};
+
+  /// `limit`: the largest frame that is accepted from the peer [bytes].
+  FrameSocket(Descriptor socket, std::string peer, std::uint32_t limit);
+
+  /// Blocks until the system has taken the whole frame. Fails with kDisconnected, or with kTimeout
+  /// if the peer does not read (limit_sending); the socket cannot be used after that.
+  Status send(const FramePieces& frame);
+  /// Blocks until a whole frame has arrived, length included; valid until the next call. Fails with
+  /// kDisconnected, or kProtocol for a length that is not allowed, after all frames that arrived
+  /// before the connection ended.
+  Result<std::span<const std::uint8_t>> receive() { return receive_until(std::nullopt); }
+  /// The same, but fails with kTimeout if no whole frame has arrived after `timeout`. A frame that
+  /// arrived in part is not lost.
+  Result<std::span<const std::uint8_t>> receive_within(Duration timeout);
+
+  /// From now on, the receiving thread calls `report` every kSlowPeriod while more bytes of a frame
+  /// arrive but not the last, with their number so far.
+  void on_slow_frame(std::function<void(std::size_t bytes)> report);
+
+  int descriptor() const { return socket_.get(); }
+  /// Ends the connection; unblocks calls that send or receive on either end.
+  void close();
+
+ private:
+  using Deadline = std::optional<std::chrono::steady_clock::time_point>;
+
+  Result<std::span<const std::uint8_t>> receive_until(const Deadline& deadline);
+  Status receive_more(const Deadline& deadline);
+  void look_out();
+  void report_slow_frame();
+
+  Descriptor socket_;
+  LookOut look_out_;
+  std::string peer_;
+  FrameBuffer input_;
+  std::function<void(std::size_t)> on_slow_frame_;
+  Deadline
+      reported_at_;  // of the frame that has arrived in part; before the first report, its begin
+  std::size_t reported_ = 0;
+};
 
 }  // namespace tether::link

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <ctime>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -40,5 +41,14 @@ std::optional<ProcessorTime> parse_processor_time(std::string_view line, Duratio
 /// Raises the number of descriptors that this process, and those that it starts, may have open to
 /// `count`, if fewer are allowed. How many are allowed then: fewer if the system allows no more.
 std::size_t allow_descriptors(std::size_t count);
+
+/// The reading of a clock of this machine: CLOCK_MONOTONIC, or the CPU time of a process or thread.
+Duration read_clock(clockid_t clock);
+
+/// The current time as in files: "2026-01-31T12:00:00Z".
+std::string utc_now();
+
+/// Sleeps until CLOCK_MONOTONIC reads that; returns at once if that is past.
+void sleep_until(Duration monotonic);
 
 }  // namespace tether::os

@@ -2,21 +2,100 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
 
+#include <tether/base/time.h>
 #include <tether/uav/camera_model.h>
 #include <tether/uav/math.h>
-#include <tether/uav/sensors/navigation.h>
-#include <tether/uav/sensors/scan.h>
 #include <tether/uav/setpoint.h>
 
-/// What a SUT knows of its UAV and the world: the sensors, and the anchors "known in advance with
-/// some useful properties" (paper, Section III). Positions are not included: the SUT measures them.
+/// Sensors that say where a UAV is. Each has what its catalogue says of it (`…Properties`) and what
+/// it measures (`…Sample`).
 namespace tether::uav {
+
+/// Satellite navigation.
+struct NavSatProperties {};
+struct NavSatSample {
+  static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+  SimTime sampled_at;
+  std::uint64_t index = 0;       ///< number of this measurement of the sensor
+  bool has_fix = false;          ///< without a fix, the numbers below are NaN
+  double latitude_deg = kNone;   ///< WGS 84, of the sensor's own origin
+  double longitude_deg = kNone;  ///< east of Greenwich
+  double altitude_m = kNone;     ///< above the ellipsoid
+  Vec3 velocity_ENU_m_s{kNone, kNone, kNone};
+  double horizontal_accuracy_m = kNone;  ///< standard deviation along each axis
+  double vertical_accuracy_m = kNone;
+  double speed_accuracy_m_s = kNone;
+};
+
+struct MagnetometerProperties {};
+struct MagnetometerSample {
+  SimTime sampled_at;
+  std::uint64_t index = 0;
+  Vec3 field_T;  ///< magnetic flux density in S [T]
+};
+
+struct BarometerProperties {};
+struct BarometerSample {
+  SimTime sampled_at;
+  std::uint64_t index = 0;
+  double pressure_Pa = 0.0;
+  double altitude_m = 0.0;  ///< of that pressure in the standard atmosphere (ISO 2533)
+};
+
+/// What a state estimator gives: an estimate, not the truth.
+struct OdometryProperties {};
+struct OdometrySample {
+  SimTime sampled_at;
+  std::uint64_t index = 0;
+  Vec3 p_WS;  ///< of the sensor's frame; without a mounting, that is the body's
+  Quat q_WS;
+  Vec3 v_WS_m_s;             ///< in W
+  Vec3 w_WS_rad_s;           ///< in S
+  Vec3 position_stddev_m;    ///< along W's axes
+  Vec3 attitude_stddev_rad;  ///< about W's axes
+  Vec3 velocity_stddev_m_s;  ///< along W's axes
+};
+
+/// Most rays of a scan.
+inline constexpr std::size_t kMaxScanRays = 1u << 18;
+
+/// Where the rays of a lidar point: rows of one elevation, each with columns of one azimuth, evenly
+/// spaced from the first to the last; a single one lies in the middle.
+struct ScanProperties {
+  int columns = 1;
+  int rows = 1;
+  double min_azimuth_rad = 0.0;  ///< about S's z, from its x
+  double max_azimuth_rad = 0.0;
+  double min_elevation_rad = 0.0;  ///< up from S's x-y plane
+  double max_elevation_rad = 0.0;
+  double min_m = 0.0;
+  double max_m = 0.0;
+  /// From the first column to the last; all at once: 0. The last one is measured at `sampled_at`,
+  /// column c so much earlier: sweep_s·(columns − 1 − c)/(columns − 1).
+  double sweep_s = 0.0;
+};
+
+/// One scan of a lidar.
+struct ScanSample {
+  SimTime sampled_at;
+  std::uint64_t index = 0;
+  /// Row by row from the lowest elevation; +inf: nothing within range, −inf: closer than the
+  /// minimum (REP-117).
+  std::vector<float> ranges_m;
+  /// Of each range, how much of the light comes back; 0 where it is not finite. Empty: not known.
+  std::vector<float> intensities{};
+};
+
+// What a SUT knows of its UAV and the world: the sensors, and the anchors "known in advance with
+// some useful properties" (paper, Section III). Positions are not included: the SUT measures them.
 
 /// Longest name in a catalogue [bytes].
 inline constexpr std::size_t kMaxNameBytes = 256;

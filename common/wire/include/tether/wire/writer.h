@@ -11,7 +11,7 @@
 
 #include <flatbuffers/flatbuffers.h>
 
-#include <tether/wire/frame_pieces.h>
+#include <tether/wire/fields.h>
 #include <tether/wire/values.h>
 
 /// Messages to frames.

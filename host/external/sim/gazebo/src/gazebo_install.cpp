@@ -10,7 +10,7 @@
 #include <fmt/ranges.h>
 
 #include <tether/base/error.h>
-#include <tether/os/program.h>
+#include <tether/os/child_process.h>
 #include <tether/sim_gazebo/gazebo_simulator.h>
 
 namespace tether::sim {

@@ -9,7 +9,6 @@
 #include <tether/base/error.h>
 #include <tether/link/server.h>
 #include <tether/os/child_process.h>
-#include <tether/os/program.h>
 #include <tether/os/text_file.h>
 
 namespace tether::sim {

@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include <tether/link/frame_socket.h>
+#include <tether/link/socket.h>
 #include <tether/sim_protocol/codec.h>
 
 namespace tether::sim::protocol {

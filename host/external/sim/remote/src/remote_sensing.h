@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include <tether/sim_sensing/ray_caster.h>
+#include <tether/sim_sensing/sensor_suite.h>
 #include <tether/sim_sensing/view_renderer.h>
 
 namespace tether::sim {

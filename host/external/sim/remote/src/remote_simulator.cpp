@@ -20,7 +20,7 @@
 #include <tether/sim/bodies.h>
 #include <tether/sim_remote/remote_simulator.h>
 #include <tether/sim_sensing/sensor_suite.h>
-#include <tether/sim_sensing/state_recorder.h>
+#include <tether/sim_sensing/state_layout.h>
 #include <tether/sim_sensing/view_renderer.h>
 
 namespace tether::sim {

@@ -16,7 +16,7 @@
 #include <fmt/format.h>
 
 #include <tether/base/error.h>
-#include <tether/os/clock.h>
+#include <tether/os/machine.h>
 
 namespace tether::autopilot {
 namespace {

@@ -7,7 +7,6 @@
 #include <unistd.h>
 
 #include <tether/base/error.h>
-#include <tether/os/clock.h>
 #include <tether/os/machine.h>
 #include <tether/os/process_table.h>
 #include <tether/os/text_file.h>

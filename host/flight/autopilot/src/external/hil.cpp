@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include <tether/base/units.h>
-#include <tether/mavlink/frames.h>
+#include <tether/mavlink/frame.h>
 #include <tether/sim/geodesy.h>
 
 namespace tether::autopilot {

@@ -15,7 +15,7 @@
 
 #include <tether/base/error.h>
 #include <tether/mavlink/frame.h>
-#include <tether/os/clock.h>
+#include <tether/os/machine.h>
 
 namespace tether::autopilot {
 namespace {

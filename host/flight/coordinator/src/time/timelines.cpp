@@ -6,7 +6,7 @@
 #include <utility>
 
 #include <tether/base/error.h>
-#include <tether/radio/link_budget.h>
+#include <tether/radio/medium.h>
 
 namespace tether::coordinator {
 namespace {

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include <tether/base/suggest.h>
+#include <tether/base/text.h>
 #include <tether/scenario/campaign.h>
 #include <tether/toml/table.h>
 

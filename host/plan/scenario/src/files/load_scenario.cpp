@@ -19,7 +19,7 @@
 
 #include <fmt/format.h>
 
-#include <tether/base/suggest.h>
+#include <tether/base/text.h>
 #include <tether/base/units.h>
 #include <tether/scenario/scenario.h>
 #include <tether/toml/table.h>

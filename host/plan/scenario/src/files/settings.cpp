@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include <tether/base/error.h>
-#include <tether/base/suggest.h>
+#include <tether/base/text.h>
 
 namespace tether::scenario {
 

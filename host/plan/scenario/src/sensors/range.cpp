@@ -1,7 +1,7 @@
 #include "sensors/sensor_key.h"
 
 #include <tether/base/units.h>
-#include <tether/sim/range_rays.h>
+#include <tether/sim/bodies.h>
 
 namespace tether::scenario {
 

@@ -8,10 +8,8 @@
 
 #include <fmt/format.h>
 
-#include <tether/autopilot/built_in.h>
 #include <tether/autopilot/external.h>
-#include <tether/autopilot/ground_station.h>
-#include <tether/autopilot/signing.h>
+#include <tether/autopilot/flight_controller.h>
 #include <tether/os/text_file.h>
 
 namespace tether::scenario {

@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include <tether/base/suggest.h>
+#include <tether/base/text.h>
 #include <tether/base/units.h>
 
 // The table of one sensor: keys of timing and mounting, which any sensor has, and those of its kind

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <tether/autopilot/external.h>
-#include <tether/autopilot/ground_station.h>
+#include <tether/autopilot/flight_controller.h>
 #include <tether/base_testing/scratch_folder.h>
 #include <tether/base_testing/thrown_error.h>
 #include <tether/scenario/scenario.h>

@@ -2,7 +2,7 @@
 
 #include "damage.h"
 
-#include <tether/base/json_depth.h>
+#include <tether/base/text.h>
 
 namespace tether::record {
 namespace {

@@ -8,7 +8,7 @@
 #include <bit>
 #include <cstring>
 
-#include <tether/base/json_depth.h>
+#include <tether/base/text.h>
 
 // Messages as JSON. The members of most messages are listed once, in members.h, for writing and
 // reading. By hand are only Foxglove's schemas (images, transforms) and the JSON of the SUT's in an

@@ -9,7 +9,7 @@
 #include <charconv>
 #include <concepts>
 
-#include <tether/base/json_depth.h>
+#include <tether/base/text.h>
 
 // Header and footer as MCAP metadata, a map of texts. Their members are listed once, in members.h:
 // MetadataWriter and MetadataReader put each into the map or take it out. Lists (SUTs, sensors,

@@ -12,7 +12,6 @@
 #include <tether/report/plots.h>
 #include <tether/report/table.h>
 #include <tether/report/verdict.h>
-#include <tether/sizing/by_uavs.h>
 #include <tether/sizing/sizing.h>
 
 /// What `tether size` found, on its two axes: the answer in sentences, as a drawing, a page and

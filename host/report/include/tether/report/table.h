@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include <tether/base/text_table.h>
+#include <tether/base/text.h>
 
 /// Tables for people and programs.
 namespace tether::report {

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include <tether/campaign/campaign_results.h>
-#include <tether/campaign/statistics.h>
 #include <tether/report/table.h>
 #include <tether/timing/pace.h>
 

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include <tether/sim_sensing/ray_caster.h>
+#include <tether/sim_sensing/sensor_suite.h>
 
 namespace tether::sim {
 

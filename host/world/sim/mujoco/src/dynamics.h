@@ -11,10 +11,9 @@
 
 #include <tether/base/time.h>
 #include <tether/sim/bodies.h>
-#include <tether/sim/clearance.h>
 #include <tether/sim/contacts.h>
 #include <tether/sim/world.h>
-#include <tether/sim_sensing/state_recorder.h>
+#include <tether/sim_sensing/state_layout.h>
 #include <tether/uav/multirotor.h>
 #include <tether/uav/wind.h>
 

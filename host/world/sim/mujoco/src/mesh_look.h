@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include <tether/base/warning.h>
+#include <tether/base/error.h>
 #include <tether/sim/world.h>
 #include <tether/sim_raster/scene.h>
 

@@ -7,7 +7,7 @@
 
 #include <tether/sim_raster/renderer.h>
 #include <tether/sim_raster/scene.h>
-#include <tether/sim_sensing/camera_renderer.h>
+#include <tether/sim_sensing/sensor_suite.h>
 
 namespace tether::sim {
 

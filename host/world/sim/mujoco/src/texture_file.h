@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string_view>
 
-#include <tether/base/warning.h>
+#include <tether/base/error.h>
 #include <tether/sim_raster/scene.h>
 
 namespace tether::sim {

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include <tether/sim_raster/view.h>
+#include <tether/sim_raster/renderer.h>
 
 /// How a picture is put together that changes while it is taken.
 namespace tether::raster {

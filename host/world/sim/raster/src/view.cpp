@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <tether/sim_raster/view.h>
+#include <tether/sim_raster/renderer.h>
 
 namespace tether::raster {
 namespace {

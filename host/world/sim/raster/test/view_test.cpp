@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <tether/sim_raster/view.h>
+#include <tether/sim_raster/renderer.h>
 
 namespace tether::raster {
 namespace {

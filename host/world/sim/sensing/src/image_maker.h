@@ -9,7 +9,7 @@
 #include <vector>
 
 #include <tether/sim/world.h>
-#include <tether/sim_sensing/camera_renderer.h>
+#include <tether/sim_sensing/sensor_suite.h>
 #include <tether/sim_sensing/state_layout.h>
 #include <tether/uav/samples.h>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <tether/sim_raster/view.h>
+#include <tether/sim_raster/renderer.h>
 
 /// The effect of a view's shutter on a changing picture, as pure functions. The picture is known at
 /// evenly spaced instants of the window, from the beginning of the first row's exposure to the end

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cassert>
 
-#include <tether/sim_sensing/state_recorder.h>
+#include <tether/sim_sensing/state_layout.h>
 
 namespace tether::sim {
 

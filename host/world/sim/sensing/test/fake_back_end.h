@@ -5,8 +5,7 @@
 #include <span>
 #include <vector>
 
-#include <tether/sim_sensing/camera_renderer.h>
-#include <tether/sim_sensing/ray_caster.h>
+#include <tether/sim_sensing/sensor_suite.h>
 
 /// A back end that makes everything up, and remembers what it was asked for.
 namespace tether::sim::testing {

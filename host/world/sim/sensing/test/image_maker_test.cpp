@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <tether/sim_sensing/state_recorder.h>
+#include <tether/sim_sensing/state_layout.h>
 #include <tether/sim_testing/test_worlds.h>
 
 namespace tether::sim {

@@ -10,7 +10,7 @@
 
 #include <tether/base/error.h>
 #include <tether/sim_sensing/sensor_suite.h>
-#include <tether/sim_sensing/state_recorder.h>
+#include <tether/sim_sensing/state_layout.h>
 #include <tether/sim_testing/test_worlds.h>
 
 namespace tether::sim {

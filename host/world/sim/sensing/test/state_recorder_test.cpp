@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <tether/sim_sensing/state_recorder.h>
+#include <tether/sim_sensing/state_layout.h>
 #include <tether/sim_testing/test_worlds.h>
 
 namespace tether::sim {

@@ -2,7 +2,7 @@
 #include <chrono>
 
 #include <tether/base/random.h>
-#include <tether/sim/range_rays.h>
+#include <tether/sim/bodies.h>
 #include <tether/sim_testing/busy_flight.h>
 #include <tether/sim_testing/test_worlds.h>
 

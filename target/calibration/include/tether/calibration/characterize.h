@@ -3,6 +3,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <tether/base/result.h>
@@ -102,5 +103,89 @@ struct ChosenTiming {
 /// `Timing::kAuto`: `periodic_timing` for a sensor with a rate if that succeeds, else
 /// `on_demand_timing`. `Timing::kPeriodic` fails as `periodic_timing`.
 Result<ChosenTiming> choose_timing(const SensorTimes& times, Timing timing, bool may_stamp_arrival);
+
+// Measurements as a profile for scenarios (docs/guide/sensors.md).
+
+struct ProfiledSensor {
+  std::string name;
+  uav::SensorKind kind = uav::SensorKind::kCamera;
+  std::string source;  ///< its device, or "virtual"; a URL's user and password are not written
+  TimingModel timing;
+};
+
+struct MeasuredProfile {
+  std::string name;      ///< @pre is_profile_name
+  std::string when;      ///< "2025-03-01T12:00:00Z"
+  std::string where;     ///< "bench-pi"
+  int acquisitions = 0;  ///< of each experiment
+  int experiments = 0;   ///< of each sensor
+  std::vector<ProfiledSensor> sensors;
+};
+
+/// 1 to 64 letters, digits, '_', '-' and '.', not starting with '.'.
+bool is_profile_name(std::string_view name);
+/// A profile name that is similar to the text.
+std::string profile_name_from(std::string text);
+
+/// The text, of any bytes, as a TOML string.
+std::string toml_string(std::string_view text);
+/// The text as one line of UTF-8 without control characters, as for a comment.
+std::string plain(std::string_view text);
+
+/// Checks that every delay is at most 60 s, the maximum in a profile. Fails with kInvalid and one
+/// line that names the sensor.
+Status check_delays(const MeasuredProfile& profile);
+
+/// The profile's TOML file, with every delay in milliseconds, exact to the nanosecond. Texts can
+/// contain any bytes.
+std::string profile_text(const MeasuredProfile& profile);
+
+// Table I of the paper, and the distributions behind its means.
+
+/// Statistics of a sample of times.
+struct TimeSummary {
+  std::size_t n = 0;
+  double mean_s = 0.0;
+  std::optional<double> stddev_s;  ///< of a sample; none of a single time
+  double min_s = 0.0;
+  double median_s = 0.0;
+  double p95_s = 0.0;
+  double p99_s = 0.0;
+  double max_s = 0.0;
+};
+
+/// Quantiles are interpolated linearly. @pre not empty
+TimeSummary summarize(std::vector<Duration> times);
+
+/// Standard deviation of the means of the experiments [s]; none for a single experiment.
+std::optional<double> stddev_between_experiments_s(const SensorTimes& times);
+
+/// Origin of the data and location of the SUT in Table I.
+struct Origin {
+  std::string data;      ///< "real sensor" or "virtual"
+  std::string location;  ///< the host's name, and of a virtual target its clock
+};
+
+/// The mean of each sensor, above the paper's three rows.
+std::string table_1(const Origin& origin, const std::vector<SensorTimes>& sensors);
+
+/// Times with a name: one row of the distribution table.
+struct NamedTimes {
+  std::string name;
+  std::vector<Duration> times;  ///< not empty
+  std::optional<double> stddev_between_experiments_s;
+};
+/// n, mean, sd, min, median, p95, p99, max of each, in milliseconds.
+std::string distribution_table(const std::vector<NamedTimes>& rows);
+
+// Output files, with failures as values instead of exceptions. Thread-safe for different paths.
+
+/// Checks, without writing, whether `write_whole` can write `path` now. Fails with kInvalid and one
+/// line if its folder does not exist or is not writable, or if `path` is not a regular file.
+Status check_writable(const std::string& path);
+
+/// Writes all of `bytes` to `path` or leaves it unchanged (see os::write_file_atomically). Fails
+/// with kInvalid and one line that names `path`.
+Status write_whole(const std::string& path, std::string_view bytes);
 
 }  // namespace tether::calibration

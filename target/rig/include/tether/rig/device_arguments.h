@@ -1,9 +1,12 @@
 #pragma once
 
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 
 #include <tether/base/result.h>
+#include <tether/client/vehicle.h>
 #include <tether/devices/rig.h>
 #include <tether/rig/mission.h>
 
@@ -30,5 +33,17 @@ void take_devices(TaskSpec& spec, DeviceArguments& arguments);
 /// Sets the names in `mission` for the sensors whose devices were moved from it. Fails with
 /// kInvalid and one line for a bad file, and if the rig lacks what the mission needs.
 Result<std::optional<devices::Rig>> make_rig(const DeviceArguments& arguments, Mission& mission);
+
+/// The same vehicle, except that its interactions fail with kRunEnded, "interrupted", once
+/// `is_interrupted` returns true. A failure caused by the interrupt is reported in the same way.
+/// `finish` still works, so that a finished task is reported as finished.
+std::unique_ptr<client::Vehicle> make_interruptible(std::unique_ptr<client::Vehicle> vehicle,
+                                                    std::function<bool()> is_interrupted);
+
+/// Installs handlers for the whole process: the first SIGINT or SIGTERM, and every SIGHUP (the
+/// terminal was closed) unless it is ignored, makes `interrupted` true. The next SIGINT or SIGTERM
+/// ends the process. SIGPIPE is ignored: output that nobody reads any more ends nothing.
+void catch_interrupts();
+bool interrupted();
 
 }  // namespace tether::rig

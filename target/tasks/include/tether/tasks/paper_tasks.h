@@ -13,7 +13,6 @@
 #include <tether/uav/math.h>
 #include <tether/uav/samples.h>
 #include <tether/vision/anchor_tracker.h>
-#include <tether/vision/relative_position.h>
 
 /// The tasks of the paper.
 namespace tether::tasks {

@@ -1,14 +1,20 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <tether/base/result.h>
 #include <tether/base/time.h>
+#include <tether/client/vehicle.h>
+#include <tether/vision/anchor_tracker.h>
 
 /// What every task is, and how long its loop may take.
 namespace tether::tasks {
@@ -87,6 +93,112 @@ class LoopLimit {
   int max_rounds_;
   ExecTime started_at_;
   int rounds_ = 0;
+};
+
+/// The camera and tracker of a task.
+struct VisionOptions {
+  std::string camera = "camera";  ///< name of the sensor
+  vision::TrackerOptions tracker;
+};
+
+/// What nested tasks share: the UAV, and the trackers, so that a task in a loop continues to track.
+/// `vehicle` must outlive it. Not thread-safe.
+class TaskContext {
+ public:
+  explicit TaskContext(client::Vehicle& vehicle, VisionOptions vision = {});
+
+  client::Vehicle& vehicle() { return vehicle_; }
+
+  const VisionOptions& vision() const { return vision_; }
+  /// Sets the options and resets all trackers. Must not be called while a task tracks an anchor.
+  void look_with(VisionOptions vision);
+
+  /// Fails (kInvalid) if the UAV has no sensor of this name.
+  Result<const uav::SensorDescription*> sensor(std::string_view name) const;
+  /// Fails (kInvalid) if the UAV has no sensor of this name and kind.
+  Result<const uav::SensorDescription*> sensor(std::string_view name, uav::SensorKind kind) const;
+  /// The camera of the vision options. Fails (kInvalid) if the UAV does not have it.
+  Result<const uav::SensorDescription*> camera() const;
+  /// Fails (kInvalid) if there is no such anchor.
+  Result<const uav::Anchor*> anchor(std::string_view name) const;
+  /// The tracker of this anchor, valid until `look_with`. Fails (kInvalid) if there is no such
+  /// anchor, or its colour cannot be tracked.
+  Result<vision::AnchorTracker*> tracker(std::string_view anchor);
+
+  /// Reads the camera under the stage "capture".
+  Result<uav::CameraSample> capture(const std::string& camera);
+  /// Finds the anchor of the tracker in the image under the stage "detect".
+  std::optional<vision::Roi> detect(vision::AnchorTracker& tracker, const uav::CameraSample& image);
+
+  /// @name Annotations in the record (topics "task", "mission", "roi", "estimate", "odometry",
+  /// "displacement"). If sending fails, the next interaction reports it. The camera of a ROI or an
+  /// estimate is that of the vision options.
+  /// @{
+  using Values = std::vector<std::pair<std::string_view, double>>;
+  void note_event(std::string_view task, std::string_view phase, std::string_view event,
+                  const Values& values = {});
+  void note_end(std::string_view task, std::string_view status, std::string_view reason);
+  /// A task of a mission starts or ends (topic "mission"). `status` and `reason`: how it ended.
+  void note_mission(std::string_view task, std::string_view event, std::string_view status = {},
+                    std::string_view reason = {});
+  void note_roi(const vision::Roi& roi, std::uint64_t image_index);
+  void note_estimate(std::string_view anchor, std::uint64_t image_index,
+                     const vision::RelativePosition& estimate, bool converged);
+  /// Position and yaw by dead reckoning in the start-heading frame H0 (x ahead at the start, y
+  /// left, origin at the start) [m, rad].
+  void note_odometry(const uav::Vec3& p_H0B, double yaw_rad);
+  /// Algorithm 5's estimate of end minus start, in H0 [m].
+  void note_displacement(const uav::Vec3& p_H0B);
+  /// @}
+
+ private:
+  client::Vehicle& vehicle_;
+  VisionOptions vision_;
+  std::map<std::string, vision::AnchorTracker, std::less<>> trackers_;
+};
+
+struct SequenceItem {
+  std::unique_ptr<Task> task = {};  ///< not null
+  VisionOptions vision = {};        ///< of this task
+  bool required = true;             ///< the sequence ends if a required task misses
+  std::string name = {};            ///< in the record; empty: the task's
+  int retry = 0;                    ///< how often it is repeated if it does not reach its goal
+  /// Index of the later item that follows if this one misses, instead of the next one.
+  std::optional<std::size_t> otherwise = {};
+  /// Times on the SUT's clock, from the start of the task and of the sequence. A task that reaches
+  /// its goal later misses, too.
+  std::optional<Duration> within = {}, before = {};
+};
+
+/// Runs tasks one after the other, as one task: "a task can also include lower-level tasks" (paper,
+/// Section III). Reaches its goal if all required tasks reach theirs. Ends with the first required
+/// task that does not ("task 2 (face_anchor): anchor lost"), and with any task that fails. After a
+/// miss with an `otherwise` it goes on there, and does not reach its goal.
+///
+/// Annotates each task in the record (topic "mission"), with its name and how it ended.
+///
+/// Its outcome has a part for each task that ran, and for each repetition. Results: "duration_s"
+/// (ET), "tasks_run", "tasks_reached".
+class TaskSequence : public Task {
+ public:
+  explicit TaskSequence(std::vector<SequenceItem> items);
+
+  std::string_view name() const override { return "mission"; }
+  Progress initialise(TaskContext& context) override;
+  Progress step(TaskContext& context) override;
+  void finalise(TaskContext& context, TaskOutcome& outcome) override;
+
+ private:
+  const TaskOutcome& run_item(const SequenceItem& item, TaskContext& context);
+  std::string why_missed(const SequenceItem& item, ExecTime began_at, ExecTime now) const;
+
+  std::vector<SequenceItem> items_;
+
+  // Of the current run.
+  ExecTime started_at_;
+  std::size_t next_ = 0;               ///< index of the item
+  std::optional<TaskOutcome> missed_;  ///< the outcome because of the first miss with `otherwise`
+  std::vector<TaskOutcome> parts_;
 };
 
 }  // namespace tether::tasks

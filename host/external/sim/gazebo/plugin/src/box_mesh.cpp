@@ -1,4 +1,4 @@
-#include <tether/sim_gazebo_plugin/box_mesh.h>
+#include <tether/sim_gazebo_plugin/shape_rays.h>
 
 namespace tether::gazebo_plugin {
 namespace {

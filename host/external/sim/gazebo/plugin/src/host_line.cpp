@@ -1,7 +1,7 @@
 #include <chrono>
 #include <utility>
 
-#include <tether/sim_gazebo_plugin/host_line.h>
+#include <tether/sim_gazebo_plugin/session.h>
 
 namespace tether::gazebo_plugin {
 namespace {

@@ -1,4 +1,4 @@
-#include <tether/sim_gazebo_plugin/simulation.h>
+#include <tether/sim_gazebo_plugin/session.h>
 
 namespace tether::gazebo_plugin {
 

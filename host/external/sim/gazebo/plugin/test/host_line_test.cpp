@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <tether/base_testing/scratch_folder.h>
-#include <tether/sim_gazebo_plugin/host_line.h>
+#include <tether/sim_gazebo_plugin/session.h>
 
 namespace tether::gazebo_plugin {
 namespace {

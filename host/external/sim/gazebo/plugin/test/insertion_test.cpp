@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <tether/sim_gazebo_plugin/simulation.h>
+#include <tether/sim_gazebo_plugin/session.h>
 
 namespace tether::gazebo_plugin {
 namespace {

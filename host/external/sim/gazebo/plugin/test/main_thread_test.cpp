@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include <tether/sim_gazebo_plugin/main_thread.h>
+#include <tether/sim_gazebo_plugin/session.h>
 
 namespace tether::gazebo_plugin {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <tether/sim_gazebo_plugin/box_mesh.h>
+#include <tether/sim_gazebo_plugin/shape_rays.h>
 
 namespace tether::gazebo_plugin {
 namespace {

@@ -5,7 +5,6 @@
 
 #include <sys/socket.h>
 
-#include <tether/link/frame_socket.h>
 #include <tether/link/socket.h>
 #include <tether/sim/bodies.h>
 #include <tether/sim_protocol/codec.h>

@@ -13,7 +13,6 @@
 #include <tether/base/error.h>
 #include <tether/base/time.h>
 #include <tether/computer/clock.h>
-#include <tether/computer/replay.h>
 #include <tether/energy/meter.h>
 #include <tether/mission/mission.h>
 #include <tether/radio/settings.h>
@@ -406,5 +405,26 @@ Resolved resolve_world(const Scenario& scenario, const Condition& condition, std
 /// @pre as of `resolve_sensors`.
 void resolve_energy(const Scenario& scenario, const Condition& condition, sim::World& world,
                     const sim::WarningSink& warn);
+
+}  // namespace tether::scenario
+namespace tether::scenario {
+
+/// For questions that flights with a goal reached or missed answer: requires a limit of a metric
+/// that flights can miss, or a mission with a deadline or a clause. The SUT's own goal alone is not
+/// enough: it says that the program ended as planned, not when or how well.
+/// @throws Error(kBadFile) about the limit or "metric", with the line if there is a metric.
+void require_decidable(const Scenario& scenario);
+
+/// How many times as long a target computes as the computer of a condition of the scenario.
+struct Slowness {
+  double factor = 1.0;
+  std::optional<std::pair<double, double>> bounds{};  ///< none: not known
+};
+
+/// By the factors of their clocks. Of counted targets, by their costs: the bounds are the least and
+/// the greatest ratio of the costs of one kind of work, so that they hold for every program.
+/// @throws Error(kUsage) about the target's file, if the two cannot be compared, or differ in more
+/// than in speed: in their launcher or, where energy is simulated, in their power.
+Slowness slowness(const Target& target, const Scenario& scenario, const Condition& condition);
 
 }  // namespace tether::scenario

@@ -8,7 +8,7 @@
 
 #include <tether/base/time.h>
 #include <tether/record/reader.h>
-#include <tether/timing/stage_table.h>
+#include <tether/timing/timing.h>
 
 namespace tether::timing {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include <tether/computer/replay.h>
+#include <tether/computer/clock.h>
 #include <tether/link/messages.h>
 #include <tether/timing/timing.h>
 

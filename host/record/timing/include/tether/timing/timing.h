@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -8,13 +9,47 @@
 #include <string_view>
 #include <vector>
 
+#include <tether/base/text.h>
 #include <tether/link/messages.h>
 #include <tether/record/reader.h>
-#include <tether/timing/doubt.h>
 
-/// What programs computed between their calls, by stage: taken from records, and kept in timing
-/// files (docs/guide/timing.md).
 namespace tether::timing {
+
+/// What a run did not see or could not measure well, so that its verdict may be wrong. The part of
+/// it that follows from the files is Warning::can_change_verdict.
+struct Doubt {
+  enum class Kind {
+    kUnseenWait,       ///< the program waited on something that Tether does not see; amount: s,
+                       ///< on the modelled computer at most, as if something else computed
+    kParallelThreads,  ///< threads computed in parallel, but their times were added; amount: CPU
+                       ///< time over wall time, > 1
+    kDiskWait,         ///< the program waited for the disk, which its clock does not count; s
+    kStretchedWait,    ///< the program waited, and a factor made more of it; s, as it was
+    kSlightWait,       ///< as the first, too short to matter unless a limit is as close; amount:
+                       ///< share of its time
+    kBusyMachine,  ///< the machine was busy or uneven; amount: the share by which its times can be
+                   ///< off
+  };
+  Kind kind = Kind::kUnseenWait;
+  std::string subject;  ///< the UAV of the program, or the board; empty: this machine
+  double amount = 0.0;
+  /// The timing file whose times are replayed, if it is a doubt of the runs in which they were
+  /// measured; empty: of this run.
+  std::string recorded_in{};
+
+  /// Without this one, the times would be other ones: nothing is known of the computer. Otherwise
+  /// the amount says by how much they can be off.
+  bool is_of_unseen_time() const { return kind < Kind::kSlightWait; }
+
+  friend bool operator==(const Doubt&, const Doubt&) = default;
+};
+inline constexpr std::size_t kDoubts = 6;  ///< kinds
+/// "unseen_wait", "parallel_threads", "disk_wait", "stretched_wait", "slight_wait",
+/// "busy_machine".
+std::string_view name(Doubt::Kind kind);
+
+// What programs computed between their calls, by stage: taken from records, and kept in timing
+// files (docs/guide/timing.md).
 
 /// A call of a SUT, and what was computed before it, each stage once.
 struct Call {
@@ -101,5 +136,53 @@ bool is_between_calls(const Timing& timing, const std::string& stage);
 /// empty.
 std::map<std::string, std::vector<double>> samples_of(const Timing& timing,
                                                       const std::string& uav = "");
+
+/// With fewer samples, quantiles of a stage say little.
+inline constexpr std::size_t kFewSamples = 20;
+
+/// The times of one stage. Times in seconds.
+struct StageRow {
+  std::string stage;
+  std::size_t count = 0;
+  double median_s = 0.0, p95_s = 0.0, p99_s = 0.0, worst_s = 0.0;
+  double share = 0.0;  ///< of all computing
+  friend bool operator==(const StageRow&, const StageRow&) = default;
+};
+
+/// The stages with the largest share first.
+std::vector<StageRow> stage_rows(const Timing& timing);
+
+/// One line for each stage with few samples.
+std::vector<std::string> warnings(const std::vector<StageRow>& rows);
+
+/// A time in milliseconds, for tables: "12.345".
+std::string in_ms(double seconds);
+/// For a person, in milliseconds; a list if the table is wider than `columns`.
+std::string to_text(const std::vector<StageRow>& rows, std::size_t columns = kAnyColumns);
+
+/// How much longer a stage takes than before, by its median. Shares: 0.12 is +12 %.
+struct StageChange {
+  std::string stage;
+  double change = 0.0;
+  double low = 0.0, high = 0.0;  ///< bounds of the 95 % interval, by bootstrap
+  std::size_t few = 0;           ///< the smaller number of samples, if it is below kFewSamples
+};
+
+struct Comparison {
+  std::vector<StageChange> stages;   ///< that both have; the largest share of the old one first
+  std::vector<std::string> added;    ///< only in the new one
+  std::vector<std::string> removed;  ///< only in the old one
+  std::string doubt{};               ///< by how much the times can be off; empty: not known
+};
+
+/// Pure: draws of the bootstrap are keyed by the stage. Stages whose share of the old computing
+/// time is below 0.1 % are left out.
+Comparison compare(const Timing& now, const Timing& before);
+
+/// Whether a stage is slower than the limit allows: 0.2 for +20 %.
+bool is_beyond(const Comparison& comparison, double limit);
+
+/// A line for each stage. With a limit: how many times slower it may still become.
+std::string to_text(const Comparison& comparison, const double* limit);
 
 }  // namespace tether::timing

@@ -10,15 +10,14 @@
 
 #include <tether/base/error.h>
 #include <tether/base/time.h>
-#include <tether/base/warning.h>
 #include <tether/campaign/metrics.h>
 #include <tether/computer/clock.h>
 #include <tether/energy/meter.h>
 #include <tether/judge/judge.h>
 #include <tether/record/reader.h>
 #include <tether/scenario/scenario.h>
-#include <tether/timing/doubt.h>
 #include <tether/timing/pace.h>
+#include <tether/timing/timing.h>
 
 /// The result of one trial and its file, `result.json` (docs/design.md section 5).
 namespace tether::campaign {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include <tether/base/warning.h>
-#include <tether/runner/back_end.h>
+#include <tether/base/error.h>
+#include <tether/runner/trial.h>
 #include <tether/scenario/campaign.h>
 
 namespace tether::sim {

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include <tether/sim/world.h>
+#include <tether/uav/math.h>
 
 namespace tether::sim {
 
@@ -46,5 +48,39 @@ struct FixedBody {
   const Model* model = nullptr;
 };
 std::vector<FixedBody> fixed_bodies(const World& world);
+
+/// The joints of all UAVs: each turns at its rate to the angle that was commanded last. Their parts
+/// weigh nothing, so that this is the same for every back end.
+class JointDrives {
+ public:
+  explicit JointDrives(const World& world);
+
+  void reset();
+  /// @pre an angle for each joint of the UAV, within its limits
+  void command(std::size_t uav, std::span<const double> angles_rad);
+  void step();
+
+  std::span<const double> angles_rad() const { return angles_rad_; }  ///< UAV by UAV
+  std::span<const double> angles_rad(std::size_t uav) const;
+
+ private:
+  struct Drive {
+    uav::Joint joint;
+    double target_rad = 0.0;
+  };
+  std::vector<Drive> drives_;
+  std::vector<double> angles_rad_;
+  std::vector<std::size_t> first_;  // of each UAV, and the end
+  double step_s_;
+};
+
+/// The rays that represent a rangefinder's field of view: a cone about x of the given full angle
+/// [rad], as RangeModel::rays_S. The middle ray comes first; then four rings at a quarter, half,
+/// three quarters and all of the half angle, with 6, 12, 18 and 24 evenly spaced rays, beginning
+/// in the x-y plane on y's side. 0 gives the middle ray alone. Objects smaller than the gaps (an
+/// eighth of the angle) can be missed.
+///
+/// @pre 0 ≤ field_of_view_rad ≤ π. Pure; safe from any thread.
+std::vector<uav::Vec3> cone_of_rays(double field_of_view_rad);
 
 }  // namespace tether::sim

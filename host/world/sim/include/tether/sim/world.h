@@ -13,14 +13,13 @@
 
 #include <tether/base/error.h>
 #include <tether/base/time.h>
-#include <tether/base/warning.h>
 #include <tether/energy/meter.h>
 #include <tether/uav/catalogue.h>
-#include <tether/uav/joint.h>
 #include <tether/uav/math.h>
 #include <tether/uav/multirotor.h>
 #include <tether/uav/path.h>
 #include <tether/uav/sensor_timing.h>
+#include <tether/uav/setpoint.h>
 #include <tether/uav/wind.h>
 
 /// The scene for every back end: the content of the SDF files with everything resolved (poses in W,

@@ -2,7 +2,7 @@
 
 #include "files/sdf_source.h"
 
-#include <tether/base/warning.h>
+#include <tether/base/error.h>
 
 namespace tether::sim {
 

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include <tether/base/suggest.h>
+#include <tether/base/text.h>
 
 namespace tether::sim {
 

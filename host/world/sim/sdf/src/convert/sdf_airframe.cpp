@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include <tether/base/suggest.h>
+#include <tether/base/text.h>
 
 namespace tether::sim {
 

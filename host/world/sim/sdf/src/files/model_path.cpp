@@ -15,7 +15,6 @@
 
 #include <tinyxml2.h>
 
-#include <tether/base/suggest.h>
 #include <tether/base/text.h>
 
 namespace tether::sim {

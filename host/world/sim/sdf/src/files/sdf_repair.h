@@ -4,7 +4,7 @@
 
 #include <tinyxml2.h>
 
-#include <tether/base/warning.h>
+#include <tether/base/error.h>
 
 namespace tether::sim {
 

@@ -12,7 +12,7 @@
 
 #include <tinyxml2.h>
 
-#include <tether/os/temporary_folder.h>
+#include <tether/os/text_file.h>
 #include <tether/sim/world.h>
 
 namespace tether::sim {

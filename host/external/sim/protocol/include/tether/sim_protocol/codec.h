@@ -7,7 +7,7 @@
 
 #include <tether/base/result.h>
 #include <tether/sim_protocol/messages.h>
-#include <tether/wire/frame_pieces.h>
+#include <tether/wire/fields.h>
 
 /// Frames: a little-endian uint32 length, then that many bytes of FlatBuffer (size-prefixed, root
 /// `Envelope` of `schema/simulator.fbs`).

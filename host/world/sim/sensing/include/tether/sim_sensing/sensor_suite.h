@@ -2,20 +2,89 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
 #include <tether/sim/simulator.h>
 #include <tether/sim/world.h>
-#include <tether/sim_sensing/camera_renderer.h>
-#include <tether/sim_sensing/ray_caster.h>
+#include <tether/sim_raster/renderer.h>
 #include <tether/sim_sensing/state_layout.h>
+#include <tether/uav/camera_model.h>
+#include <tether/uav/math.h>
 #include <tether/uav/samples.h>
 
 namespace tether::sim {
+
+/// Draws the pictures of cameras: what a back end provides for them. Lens, exposure and rolling
+/// shutter are part of a picture; the sensing library adds the noise. The same view always gives
+/// the same bytes. One thread at a time.
+class CameraRenderer {
+ public:
+  virtual ~CameraRenderer() = default;
+  CameraRenderer(const CameraRenderer&) = delete;
+  CameraRenderer& operator=(const CameraRenderer&) = delete;
+
+  /// `view.instants` have the poses of all of `moving_bodies`, in its order,
+  /// then those of `turned_parts`; `view.hidden` is one
+  /// of these. A pixel's entity is the number of its model, as in `model_names`.
+  /// @throws Error(kSetup) when the back end is lost.
+  virtual void draw(const raster::View& view, const raster::Picture& picture) = 0;
+
+  /// Whether it draws depths and entities, too. If not, cameras measure colours only.
+  virtual bool knows_pixels() const { return false; }
+
+  /// How many pixels of a camera are black, because its distortion maps no direction to them.
+  virtual std::size_t blind_pixels(const uav::CameraModel& camera) = 0;
+
+  /// The renderer's name, for the record; maybe empty before the first picture.
+  virtual std::string name() const = 0;
+
+ protected:
+  CameraRenderer() = default;
+};
+
+/// Called once, for the first image: a run without a camera needs no renderer. Helpers may be null;
+/// else they outlive the renderer's pictures.
+/// @throws Error(kSetup) without a renderer, Error(kBadFile) for something that cannot be shown.
+using CameraRendererFactory =
+    std::function<std::unique_ptr<CameraRenderer>(raster::Helpers* helpers)>;
+
+/// Rays from one point into the world, with the moving bodies at given poses.
+struct RayBundle {
+  uav::Pose X_WS;                     ///< of the sensor; the rays begin at its origin
+  std::span<const uav::Vec3> rays_S;  ///< unit vectors
+  std::span<const uav::Pose> X_WB;    ///< of each of `moving_bodies`, in its order
+  std::size_t ignored = 0;            ///< one of `moving_bodies` that rays do not hit: the carrier
+  double max_m = std::numeric_limits<double>::infinity();  ///< farther objects may be ignored
+};
+
+/// Measures distances to collision shapes: what a back end provides for rangefinders. A function of
+/// its arguments: the same bundle gives the same distances. Used from one thread at a time.
+class RayCaster {
+ public:
+  virtual ~RayCaster() = default;
+  RayCaster(const RayCaster&) = delete;
+  RayCaster& operator=(const RayCaster&) = delete;
+
+  /// How far each ray goes until it meets something; infinite where it meets nothing [m].
+  /// @pre as many distances as rays. @throws Error(kSetup) when the back end is lost.
+  virtual void cast(const RayBundle& bundle, std::span<double> distances_m) = 0;
+  /// The same with the Collision::intensity of what each ray meets, 0 of nothing. False: not known,
+  /// and nothing was cast.
+  virtual bool cast_with_intensities(const RayBundle& /*bundle*/, std::span<double> /*distances_m*/,
+                                     std::span<float> /*intensities*/) {
+    return false;
+  }
+
+ protected:
+  RayCaster() = default;
+};
 
 class AheadDrawer;
 class ImageMaker;

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include <tether/sim/world.h>
-#include <tether/sim_sensing/camera_renderer.h>
+#include <tether/sim_sensing/sensor_suite.h>
 #include <tether/uav/camera_model.h>
 #include <tether/uav/math.h>
 

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include <tether/sim/joint_drives.h>
+#include <tether/sim/bodies.h>
 #include <tether/sim/simulator.h>
 
 namespace tether::sim {

@@ -1,5 +1,10 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
 #include <tether/uav/math.h>
 
 namespace tether::gazebo_plugin {
@@ -29,5 +34,31 @@ double distance_to_box_m(const Ray& ray, const uav::Vec3& size_m);
 double distance_to_sphere_m(const Ray& ray, double radius_m);
 /// Along z.
 double distance_to_cylinder_m(const Ray& ray, double radius_m, double length_m);
+
+struct BoxVertex {
+  uav::Vec3 position;  ///< of a box with edges of length 1 around the origin
+  uav::Vec3 normal;
+  double u = 0.0, v = 0.0;
+};
+
+struct BoxMesh {
+  std::vector<BoxVertex> vertices;
+  /// Counter-clockwise, seen from outside.
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
+/// A unit box to be scaled to `size_m`. Its texture begins in the upper left corner of each face,
+/// seen from outside (top and bottom: at the ends of −x and of +y), with the given repetitions per
+/// metre.
+BoxMesh textured_box(const uav::Vec3& size_m, double repeat_x_per_m, double repeat_y_per_m);
+
+struct TextureRepeat {
+  double x = 1.0, y = 1.0;
+};
+
+/// The repetitions of a texture over one of Gazebo's unit shapes that is scaled to `size_m`, for
+/// the given repetitions per metre of surface. 1 for any other mesh, which has its own coordinates.
+TextureRepeat texture_repeat(const std::string& mesh, const uav::Vec3& size_m,
+                             double repeat_x_per_m, double repeat_y_per_m);
 
 }  // namespace tether::gazebo_plugin
