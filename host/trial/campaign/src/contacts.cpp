@@ -59,7 +59,7 @@ MetricOutcome collisions(const scenario::Metric& metric, const record::Record& r
   return {static_cast<double>(count), ""};
 }
 
-MetricOutcome min_clearance(const scenario::Metric& metric, const record::Record& record) {
+MetricOutcome min_clearance_m(const scenario::Metric& metric, const record::Record& record) {
   if (const auto nearest = clearance_of(record, metric.uav)) return {nearest->min_m, ""};
   return missing(fmt::format("the clearance of '{}' was not measured", metric.uav));
 }

@@ -63,7 +63,7 @@ std::vector<UavEnergy> energy_of(const record::Record& record,
   return all;
 }
 
-MetricOutcome energy_spent(const scenario::Metric& metric, const record::Record& record) {
+MetricOutcome energy_j(const scenario::Metric& metric, const record::Record& record) {
   const std::vector<const record::Battery*> own = batteries_of(metric.uav, record);
   if (own.empty()) return missing(fmt::format("the record has no battery of '{}'", metric.uav));
   return {own.back()->spent_j() - own.front()->spent_j(), ""};

@@ -35,19 +35,10 @@ struct StartAndEnd {
 /// None if the SUT did not finish, or ground truth lacks one of the two.
 std::optional<StartAndEnd> start_and_end(const record::Record& record, const std::string& uav);
 
-// Kinds (scenario::metric_kinds()). Of the UAV's path:
-MetricOutcome abeam_error(const scenario::Metric& metric, const record::Record& record);
-MetricOutcome return_error(const scenario::Metric& metric, const record::Record& record);
-// Of what it touched:
-MetricOutcome collisions(const scenario::Metric& metric, const record::Record& record);
-MetricOutcome energy_spent(const scenario::Metric& metric, const record::Record& record);
-MetricOutcome min_clearance(const scenario::Metric& metric, const record::Record& record);
-// Of the radio:
-MetricOutcome delivery_ratio(const scenario::Metric& metric, const record::Record& record);
-MetricOutcome age_of_information(const scenario::Metric& metric, const record::Record& record);
-// Of the SUT's own estimates:
-MetricOutcome bearing_error(const scenario::Metric& metric, const record::Record& record);
-MetricOutcome distance_error(const scenario::Metric& metric, const record::Record& record);
-MetricOutcome estimate_error(const scenario::Metric& metric, const record::Record& record);
+// One function for each kind of metric.
+#define TETHER_DECLARE(function, ...) \
+  MetricOutcome function(const scenario::Metric& metric, const record::Record& record);
+TETHER_METRICS(TETHER_DECLARE)
+#undef TETHER_DECLARE
 
 }  // namespace tether::campaign

@@ -41,24 +41,6 @@ MetricOutcome with_bearings(const scenario::Metric& metric, const record::Record
   return {evaluate(bearings_rad), ""};
 }
 
-MetricOutcome time_required(const scenario::Metric& metric, const record::Record& record) {
-  const std::optional<SimTime> finish = finish_time(record, metric.uav);
-  return finish ? MetricOutcome{to_seconds(*finish), ""} : no_finish(metric);
-}
-
-MetricOutcome oscillations(const scenario::Metric& metric, const record::Record& record) {
-  return with_bearings(metric, record, [&](const std::vector<double>& bearings_rad) {
-    return static_cast<double>(count_overshoots(bearings_rad, metric.threshold_rad));
-  });
-}
-
-MetricOutcome final_bearing_error(const scenario::Metric& metric, const record::Record& record) {
-  if (!finish_time(record, metric.uav)) return no_finish(metric);
-  return with_bearings(metric, record, [](const std::vector<double>& bearings_rad) {
-    return deg_from_rad(std::abs(bearings_rad.back()));
-  });
-}
-
 // ST per second of wall time, as achieved: at most the limit, less where the simulator was too
 // slow.
 double pace(const record::Record& record) {
@@ -87,6 +69,41 @@ std::vector<const record::Interaction*> interactions_of(const std::string& uav,
   return own;
 }
 
+struct Kind {
+  std::string_view name;
+  MetricOutcome (*compute)(const scenario::Metric&, const record::Record&);
+};
+
+#define TETHER_KIND(function, ...) Kind{#function, function},
+constexpr std::array kKinds = {TETHER_METRICS(TETHER_KIND)};
+#undef TETHER_KIND
+
+MetricOutcome compute(const scenario::Metric& metric, const record::Record& record) {
+  const auto* kind = std::ranges::find(kKinds, metric.kind, &Kind::name);
+  if (kind != kKinds.end()) return kind->compute(metric, record);
+  return missing(fmt::format("there is no metric of the kind '{}'", metric.kind));
+}
+
+}  // namespace
+
+MetricOutcome time_required(const scenario::Metric& metric, const record::Record& record) {
+  const std::optional<SimTime> finish = finish_time(record, metric.uav);
+  return finish ? MetricOutcome{to_seconds(*finish), ""} : no_finish(metric);
+}
+
+MetricOutcome oscillations(const scenario::Metric& metric, const record::Record& record) {
+  return with_bearings(metric, record, [&](const std::vector<double>& bearings_rad) {
+    return static_cast<double>(count_overshoots(bearings_rad, metric.threshold_rad));
+  });
+}
+
+MetricOutcome final_bearing_error(const scenario::Metric& metric, const record::Record& record) {
+  if (!finish_time(record, metric.uav)) return no_finish(metric);
+  return with_bearings(metric, record, [](const std::vector<double>& bearings_rad) {
+    return deg_from_rad(std::abs(bearings_rad.back()));
+  });
+}
+
 // Without the first read, which turns the sensor on: Algorithm 1 does that before it takes the
 // time.
 MetricOutcome acquisition_time(const scenario::Metric& metric, const record::Record& record) {
@@ -101,37 +118,6 @@ MetricOutcome acquisition_time(const scenario::Metric& metric, const record::Rec
   return missing(
       fmt::format("the SUT of '{}' did not read '{}' more than once", metric.uav, metric.sensor));
 }
-
-struct Kind {
-  std::string_view name;
-  MetricOutcome (*compute)(const scenario::Metric&, const record::Record&);
-};
-
-// One entry for each of scenario::metric_kinds().
-constexpr std::array kKinds = {
-    Kind{"time_required", time_required},
-    Kind{"oscillations", oscillations},
-    Kind{"final_bearing_error", final_bearing_error},
-    Kind{"bearing_error", bearing_error},
-    Kind{"distance_error", distance_error},
-    Kind{"abeam_error", abeam_error},
-    Kind{"return_error", return_error},
-    Kind{"estimate_error", estimate_error},
-    Kind{"acquisition_time", acquisition_time},
-    Kind{"collisions", collisions},
-    Kind{"min_clearance_m", min_clearance},
-    Kind{"energy_j", energy_spent},
-    Kind{"delivery_ratio", delivery_ratio},
-    Kind{"age_of_information", age_of_information},
-};
-
-MetricOutcome compute(const scenario::Metric& metric, const record::Record& record) {
-  const auto* kind = std::ranges::find(kKinds, metric.kind, &Kind::name);
-  if (kind != kKinds.end()) return kind->compute(metric, record);
-  return missing(fmt::format("there is no metric of the kind '{}'", metric.kind));
-}
-
-}  // namespace
 
 MetricOutcome missing(std::string because) {
   return {std::nullopt, std::move(because)};

@@ -55,14 +55,14 @@ TEST(Energy, EndsWhenTheSutFinishes) {
   finish.st_at_arrival = finish.st_at_release = st(4);
   record.interactions.push_back({st(4), 0, finish});
   EXPECT_DOUBLE_EQ(total_J(energy_of(record, {})[0].spent_J), 420.0);
-  EXPECT_DOUBLE_EQ(*energy_spent(metric(), record).value, 420.0);
+  EXPECT_DOUBLE_EQ(*energy_j(metric(), record).value, 420.0);
 }
 
 TEST(Energy, IsMissingWithoutABattery) {
   record::Record record;
   record.header.suts.emplace_back().uav = "uav1";
   EXPECT_TRUE(energy_of(record, {}).empty());
-  EXPECT_FALSE(energy_spent(metric(), record).value);
+  EXPECT_FALSE(energy_j(metric(), record).value);
 }
 
 }  // namespace

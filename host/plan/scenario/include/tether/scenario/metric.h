@@ -40,7 +40,29 @@ struct MetricKind {
   bool of_any_flight = false;      ///< it has a value even if the SUT missed its goal
 };
 
-/// All kinds.
+// All kinds: a row is the function of `campaign` that computes it, which has the name of the kind,
+// and the other members of MetricKind.
+#define TETHER_METRICS(ROW)                                                                     \
+  ROW(time_required, .label = "Time required", .unit = "s")                                     \
+  ROW(oscillations, .label = "Oscillations", .unit = "1", .needs_anchor = true,                 \
+      .default_threshold_deg = 1.0)                                                             \
+  ROW(final_bearing_error, .label = "Final bearing error", .unit = "deg", .needs_anchor = true) \
+  ROW(bearing_error, .label = "Bearing error", .unit = "deg", .needs_anchor = true)             \
+  ROW(distance_error, .label = "Distance error", .unit = "m", .needs_anchor = true)             \
+  ROW(abeam_error, .label = "Abeam error", .unit = "m", .needs_anchor = true)                   \
+  ROW(return_error, .label = "Return error", .unit = "m")                                       \
+  ROW(estimate_error, .label = "Estimate error", .unit = "m")                                   \
+  ROW(acquisition_time, .label = "Acquisition time", .unit = "ms", .needs_sensor = true)        \
+  ROW(collisions, .label = "Collisions", .unit = "1", .has_speed_threshold = true,              \
+      .of_any_flight = true)                                                                    \
+  ROW(min_clearance_m, .label = "Least clearance, floor included", .unit = "m",                 \
+      .is_better_if_more = true, .of_any_flight = true)                                         \
+  ROW(energy_j, .label = "Energy", .unit = "J")                                                 \
+  ROW(delivery_ratio, .label = "Delivery ratio", .unit = "1", .is_better_if_more = true,        \
+      .of_any_flight = true)                                                                    \
+  ROW(age_of_information, .label = "Age of information", .unit = "s", .of_any_flight = true)
+
+/// What a scenario sets of each.
 std::span<const MetricKind> metric_kinds();
 
 /// nullptr if there is none of that name.
