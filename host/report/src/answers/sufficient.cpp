@@ -4,30 +4,22 @@
 
 #include <algorithm>
 #include <map>
+#include <string_view>
 
 #include <fmt/format.h>
 
 namespace tether::report {
 namespace {
 
+constexpr std::string_view kFactorKey = "cpu_factor";
+
 /// What was flown with one condition at one combination of the other values, by cpu_factor.
 using ByFactor = std::map<double, const ConditionVerdict*>;
 
-bool is_factor(const campaign::Setting& setting) {
-  return setting.key == "cpu_factor" || setting.key == "condition.cpu_factor";
-}
-
-bool is_of_speed(const campaign::Setting& setting) {
-  return is_factor(setting) || setting.key == "computing_ms" ||
-         setting.key == "condition.computing_ms";
-}
-
-std::string settings_without(const Verdict& point, bool (*is_left_out)(const campaign::Setting&)) {
-  std::string text;
-  for (const campaign::Setting& setting : point.settings)
-    if (!is_left_out(setting))
-      text += fmt::format("{}{} = {}", text.empty() ? " with " : ", ", setting.key, setting.value);
-  return text;
+bool is_of(const campaign::Setting& setting, std::initializer_list<std::string_view> keys) {
+  return std::ranges::any_of(keys, [&](std::string_view key) {
+    return setting.key == key || setting.key == fmt::format("condition.{}", key);
+  });
 }
 
 /// One flight at each factor shows that flight only, and a world without its wind less.
@@ -59,12 +51,12 @@ bool is_sufficient(Ruling ruling) {
   return ruling == Ruling::kFastEnough || ruling == Ruling::kFastEnoughSoFar;
 }
 
-std::string other_settings(const Verdict& point) {
-  return settings_without(point, is_factor);
-}
-
-std::string settings_beside_speed(const Verdict& point) {
-  return settings_without(point, is_of_speed);
+std::string settings_beside(std::initializer_list<std::string_view> keys, const Verdict& point) {
+  std::string text;
+  for (const campaign::Setting& setting : point.settings)
+    if (!is_of(setting, keys))
+      text += fmt::format("{}{} = {}", text.empty() ? " with " : ", ", setting.key, setting.value);
+  return text;
 }
 
 std::vector<Answer> sufficient_factors(const std::vector<Verdict>& points) {
@@ -72,11 +64,12 @@ std::vector<Answer> sufficient_factors(const std::vector<Verdict>& points) {
   for (std::size_t i = 0; i < points.front().conditions.size(); ++i) {
     std::map<std::string, ByFactor> flown;
     for (const Verdict& point : points) {
-      const auto factor = std::ranges::find_if(point.settings, is_factor);
+      const auto factor = std::ranges::find_if(
+          point.settings, [](const auto& setting) { return is_of(setting, {kFactorKey}); });
       if (factor == point.settings.end()) return {};
       if (const auto value = number_in(factor->value))
-        flown[fmt::format("“{}”{}", point.conditions[i].condition, other_settings(point))][*value] =
-            &point.conditions[i];
+        flown[fmt::format("“{}”{}", point.conditions[i].condition,
+                          settings_beside({kFactorKey}, point))][*value] = &point.conditions[i];
     }
     // Where another key varies with the factor, nothing shows what made the difference.
     const bool varies_alone = flown.size() == 1 || std::ranges::any_of(flown, [](const auto& one) {
@@ -90,13 +83,16 @@ std::vector<Answer> sufficient_factors(const std::vector<Verdict>& points) {
 }
 
 std::string reservation_on(std::span<const campaign::TrialResult* const> trials) {
-  const auto has = [&](bool (*is)(const Warning&)) {
-    return std::ranges::any_of(trials, [&](const campaign::TrialResult* trial) {
-      return trial->outcome == campaign::Outcome::kGoalReached &&
-             std::ranges::any_of(trial->warnings, is);
-    });
-  };
-  return has(is_left_out) ? kNotAsWritten : has(is_doubtful) ? kDoubtful : "";
+  const char* reservation = "";
+  for (const campaign::TrialResult* trial : trials) {
+    if (trial->outcome != campaign::Outcome::kGoalReached) continue;
+    for (const Warning& warning : trial->warnings) {
+      if (!warning.can_change_verdict) continue;
+      if (warning.consequence != Consequence::kDoubtful) return kNotAsWritten;
+      reservation = kDoubtful;
+    }
+  }
+  return reservation;
 }
 
 std::vector<const campaign::TrialResult*> pointers_to(
@@ -106,10 +102,6 @@ std::vector<const campaign::TrialResult*> pointers_to(
   return pointers;
 }
 
-bool is_left_out(const Warning& warning) {
-  return warning.can_change_verdict && warning.consequence != Consequence::kDoubtful;
-}
-
 const std::vector<std::string>& ConditionVerdict::doubts_of_answer() const {
   return is_sufficient(ruling) ? doubtful_goals : doubtful;
 }
@@ -117,10 +109,6 @@ const std::vector<std::string>& ConditionVerdict::doubts_of_answer() const {
 bool is_in_doubt(const ConditionVerdict& condition) {
   return (is_sufficient(condition.ruling) || condition.ruling == Ruling::kNotFastEnough) &&
          !condition.doubts_of_answer().empty();
-}
-
-bool is_doubtful(const Warning& warning) {
-  return warning.can_change_verdict && warning.consequence == Consequence::kDoubtful;
 }
 
 }  // namespace tether::report

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <initializer_list>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <tether/report/verdict.h>
@@ -14,11 +16,9 @@ inline constexpr const char* kSoFar = "Interrupted, so far: ";
 /// Whether it is fast enough, at least so far.
 bool is_sufficient(Ruling ruling);
 
-/// What a point of a sweep has beside its cpu_factor: " with rate_hz = 10"; empty: nothing.
-std::string other_settings(const Verdict& point);
-
-/// The same of what beside the speed of the computer: its points are compared as conditions are.
-std::string settings_beside_speed(const Verdict& point);
+/// What a point of a sweep has beside these keys: " with rate_hz = 10"; empty: nothing. Points with
+/// the same beside the keys of the computer's speed are compared as conditions are.
+std::string settings_beside(std::initializer_list<std::string_view> keys, const Verdict& point);
 
 /// Of a sweep over cpu_factor: for each condition and combination of the other values, the largest
 /// factor up to which it is fast enough. @pre the points are of one scenario; not empty.
@@ -32,9 +32,6 @@ inline constexpr const char* kVarySeeds =
 /// An answer that speed is sufficient, or is not, which rests on something doubtful.
 bool is_in_doubt(const ConditionVerdict& condition);
 
-/// What can change a flight's verdict: something that it left out, or that may be a mistake.
-bool is_left_out(const Warning& warning);
-bool is_doubtful(const Warning& warning);
 inline constexpr const char* kNotAsWritten = ", but not everything is simulated as written";
 inline constexpr const char* kDoubtful = ", but something is doubtful";
 

@@ -67,13 +67,14 @@ void count(ConditionVerdict& verdict, const campaign::TrialResult& trial) {
   }
   ++verdict.flown;
   for (const Warning& warning : trial.warnings) {
-    if (!is_left_out(warning) && !is_doubtful(warning)) continue;
+    if (!warning.can_change_verdict) continue;
+    const bool is_doubtful = warning.consequence == Consequence::kDoubtful;
     const std::string line = warning.subject + " " + warning.message;
     const auto add_to = [&](std::vector<std::string>& lines) {
       if (std::ranges::count(lines, line) == 0) lines.push_back(line);
     };
-    add_to(is_doubtful(warning) ? verdict.doubtful : verdict.left_out);
-    if (is_doubtful(warning) && trial.outcome == campaign::Outcome::kGoalReached)
+    add_to(is_doubtful ? verdict.doubtful : verdict.left_out);
+    if (is_doubtful && trial.outcome == campaign::Outcome::kGoalReached)
       add_to(verdict.doubtful_goals);
   }
   if (trial.replay)
@@ -377,8 +378,8 @@ std::vector<Verdict> rule(std::vector<Verdict> verdicts,
     for (std::size_t j = 0; j < verdict.conditions.size(); ++j) {
       ConditionVerdict& condition = verdict.conditions[j];
       const std::string with = verdict.point.empty() ? "" : " with " + verdict.point;
-      comparable[{verdict.scenario, settings_beside_speed(verdict)}].push_back(
-          {&condition, &scenarios[i]->conditions[j], condition.condition + with});
+      comparable[{verdict.scenario, settings_beside({"cpu_factor", "computing_ms"}, verdict)}]
+          .push_back({&condition, &scenarios[i]->conditions[j], condition.condition + with});
     }
   }
   // A sweep makes many comparisons, of which some succeed by chance.
