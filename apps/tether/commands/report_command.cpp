@@ -38,19 +38,8 @@ struct ReportOptions {
 
 constexpr const char *kHtml = "html", *kJson = "json";
 
-bool is_run(const std::filesystem::path& folder) {
-  return !std::filesystem::exists(folder / campaign::kCampaignFile) &&
-         std::filesystem::exists(folder / campaign::kResultFile);
-}
-
 [[noreturn]] void refuse(const std::filesystem::path& path, const std::string& why) {
   throw Error(ErrorCode::kBadFile, {path.string()}, why).about(path.string());
-}
-
-bool has_results(const std::filesystem::path& folder) {
-  std::error_code ignored;
-  return std::filesystem::exists(folder / campaign::kCampaignFile, ignored) ||
-         std::filesystem::exists(folder / campaign::kResultFile, ignored);
 }
 
 /// " Give one of those in it: out/one, out/two."; empty: there are none.
@@ -59,7 +48,7 @@ std::string inside(const std::filesystem::path& folder) {
   std::vector<std::string> found;
   std::error_code ignored;
   for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))
-    if (has_results(entry.path())) found.push_back(entry.path().string());
+    if (results_in(entry.path())) found.push_back(entry.path().string());
   if (found.empty()) return "";
   std::ranges::sort(found);
   const bool has_more = found.size() > kMost;
@@ -80,7 +69,7 @@ void require_result(const std::filesystem::path& folder) {
   }
   if (access(folder.c_str(), R_OK | X_OK) != 0)
     refuse(folder, fmt::format("cannot be read: {}", std::strerror(errno)));
-  if (has_results(folder)) return;
+  if (results_in(folder)) return;
   const std::filesystem::path record = folder / runner::kRecordFile;
   if (!std::filesystem::exists(record))
     refuse(folder, fmt::format("is neither a run nor a campaign: it has no {} and no {}.{}",
@@ -123,7 +112,7 @@ void refuse_size(const std::filesystem::path& folder) {
 
 std::string rendered(const ReportOptions& options) {
   require_result(options.folder);
-  const bool run = is_run(options.folder);
+  const bool run = results_in(options.folder) == FileKind::kRun;
   if (!run) refuse_size(options.folder);
   if (options.format == kHtml && run) return report::run_page(options.folder);
   const campaign::CampaignResults results = run ? report::read_run_results(options.folder)

@@ -78,15 +78,20 @@ std::optional<FileKind> kind_of_toml(const fs::path& file) try {
 
 }  // namespace
 
+std::optional<FileKind> results_in(const fs::path& folder) {
+  std::error_code ignored;
+  if (fs::exists(folder / campaign::kCampaignFile, ignored)) return FileKind::kCampaignFolder;
+  if (fs::exists(folder / campaign::kResultFile, ignored)) return FileKind::kRun;
+  return std::nullopt;
+}
+
 std::optional<FileKind> kind_of(const fs::path& path) {
   constexpr std::string_view kMcap = "\x89MCAP";
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) {
-    if (fs::exists(path / campaign::kCampaignFile, ignored)) return FileKind::kCampaignFolder;
-    for (const std::string_view file :
-         {campaign::kResultFile, std::string_view(runner::kRecordFile)})
-      if (fs::exists(path / file, ignored)) return FileKind::kRun;
-    return std::nullopt;
+    const bool has_record = fs::exists(path / runner::kRecordFile, ignored);
+    const auto results = results_in(path);
+    return results || !has_record ? results : FileKind::kRun;
   }
   if (!fs::is_regular_file(path, ignored)) return std::nullopt;
   const std::string begin = os::begin_of(path, kMcap.size());

@@ -21,6 +21,9 @@ enum class FileKind {
   kProgram,
 };
 
+/// kRun or kCampaignFolder: which results a folder has; none: it has none, or cannot be read.
+std::optional<FileKind> results_in(const std::filesystem::path& folder);
+
 /// By its content; none if it is none of them, cannot be read, or could be several.
 std::optional<FileKind> kind_of(const std::filesystem::path& path);
 
