@@ -140,8 +140,6 @@ void read_scene(const sdf::Scene* scene, World& world) {
   for (Light& light : world.lights) light.cast_shadows = false;
 }
 
-constexpr double kFarthest_m = 1e5;
-
 /// Where the models were when the world was saved: Gazebo 11 puts them there.
 void apply_state(const SdfSource& source, World& world) {
   const sdf::ElementPtr state = source.element()->GetElement("world")->FindElement("state");
@@ -153,7 +151,7 @@ void apply_state(const SdfSource& source, World& world) {
     const auto model = std::ranges::find(world.models, name, &Model::name);
     if (!pose || model == world.models.end()) continue;
     const Pose X_WM = to_pose(pose->Get<ignition::math::Pose3d>());
-    if (!(uav::norm(X_WM.p) <= kFarthest_m)) continue;  // it fell for ever
+    if (!(uav::norm(X_WM.p) <= kMaxLength_m)) continue;  // it fell for ever
     const Pose X_new_old = X_WM * uav::inverse(model->X_WM);
     for (Model& part : world.models)
       if (part.name == name || part.name.starts_with(name + "::"))

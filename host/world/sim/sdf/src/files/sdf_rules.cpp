@@ -7,8 +7,7 @@ namespace tether::sim {
 
 namespace {
 
-/// Limits of what a scene can hold: single-precision rendering and contacts fail long before.
-constexpr double kMaxLength_m = 1e5;
+/// As kMaxLength_m.
 constexpr double kMaxMass_kg = 1e6;
 
 bool is_positive(double value) {

@@ -5,6 +5,9 @@
 
 namespace tether::sim {
 
+/// Limit of what a scene can hold: single-precision rendering and contacts fail long before.
+inline constexpr double kMaxLength_m = 1e5;
+
 /// What the numbers of an element must be, beyond finite.
 struct ValueRule {
   bool (*holds)(double value);
