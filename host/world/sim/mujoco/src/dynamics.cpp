@@ -39,7 +39,6 @@ Dynamics::Dynamics(const World& world, const WarningSink& warn, const MeshFiles&
     : world_(world),
       model_(make_physics_model(world, warn, meshes)),
       data_(make_data(*model_)),
-      scratch_(make_data(*model_)),
       recorder_(world),
       X_WB_(recorder_.layout().bodies()),
       motions_(recorder_.layout().uavs()),
@@ -193,6 +192,7 @@ void Dynamics::carry(std::size_t uav) {
   if (load_kg == flights_[uav].load_kg) return;
   flights_[uav].load_kg = load_kg;
   model_->body_mass[engine_body(uav)] = world_.uavs[uav].airframe.mass_kg + load_kg;
+  if (!scratch_) scratch_ = make_data(*model_);
   mj_setConst(model_.get(), scratch_.get());
 }
 

@@ -77,7 +77,7 @@ class Dynamics {
   const World& world_;
   ModelPtr model_;
   DataPtr data_;
-  DataPtr scratch_;  // for the engine's constants, which depend on masses
+  DataPtr scratch_;  // for the engine's constants, once a mass changes; to clear it takes long
   std::vector<Flight> flights_;
   std::vector<std::pair<std::size_t, MovingBody>> driven_;  // with their numbers
   StateRecorder recorder_;
