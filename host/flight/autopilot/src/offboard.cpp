@@ -40,8 +40,7 @@ std::array<double, 3> parts(const Vec3& v) {
 }  // namespace
 
 bool Offboard::takes(const mavlink::Message& message) {
-  return message.is("SET_POSITION_TARGET_LOCAL_NED") ||
-         message.is("SET_POSITION_TARGET_GLOBAL_INT") || message.is("SET_ATTITUDE_TARGET");
+  return uav::is_setpoint(message.name());
 }
 
 std::string Offboard::on_message(const mavlink::Message& message, const Vehicle& vehicle) {

@@ -48,6 +48,11 @@ Pose turned(std::span<const Joint> joints, std::span<const double> angles_rad, c
 // combinations follow MAVLink's SET_POSITION_TARGET_LOCAL_NED and SET_ATTITUDE_TARGET; the frames
 // are Tether's (W: ENU, B: FLU).
 
+/// Whether MAVLink's message of this name is a set-point.
+constexpr bool is_setpoint(std::string_view message) {
+  return message.starts_with("SET_POSITION_TARGET_") || message == "SET_ATTITUDE_TARGET";
+}
+
 /// A velocity and a yaw rate, held until the next command. Linear velocity is in the heading frame
 /// H: x ahead along the heading, y left, z up, for any roll and pitch of the UAV.
 struct VelocityCommand {

@@ -9,6 +9,7 @@
 
 #include <tether/base/time.h>
 #include <tether/record/header.h>
+#include <tether/uav/setpoint.h>
 
 /// What was commanded, as messages of a record have it.
 namespace tether::record {
@@ -291,8 +292,7 @@ struct AutopilotMessage {
   }
   /// Whether it is a command of what to fly now.
   bool is_setpoint() const {
-    return to_controller && outcome != kIgnored &&
-           (name.starts_with("SET_POSITION_TARGET_") || name == "SET_ATTITUDE_TARGET");
+    return to_controller && outcome != kIgnored && uav::is_setpoint(name);
   }
 };
 
