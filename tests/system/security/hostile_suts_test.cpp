@@ -96,7 +96,7 @@ SutMisdeed sends(const std::string& name,
 }
 
 // One of each kind. The rules themselves: common/link/test/validate_test.cpp,
-// host/flight/coordinator/test/validator_test.cpp.
+// host/flight/coordinator/test/sessions/validator_test.cpp.
 const SutMisdeed kSutMisdeeds[] = {
     sends(
         "NoSuchSensor",

@@ -2,15 +2,15 @@
 
 #include "controller_links.h"
 #include "ends.h"
-#include "looks.h"
 #include "peers.h"
 #include "radio_traffic.h"
 #include "run_log.h"
-#include "session.h"
+#include "sessions/looks.h"
+#include "sessions/session.h"
+#include "sessions/watchdog.h"
 #include "stepper.h"
 #include "time/real_time_limit.h"
 #include "time/timelines.h"
-#include "watchdog.h"
 
 #include <optional>
 #include <string>

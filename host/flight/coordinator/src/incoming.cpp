@@ -1,6 +1,6 @@
-#include "admission.h"
 #include "coordinator_impl.h"
 #include "plan.h"
+#include "sessions/admission.h"
 
 #include <algorithm>
 #include <utility>

@@ -2,7 +2,7 @@
 
 #include "controller_links.h"
 #include "radio_traffic.h"
-#include "session.h"
+#include "sessions/session.h"
 #include "stepper.h"
 #include "time/timeline.h"
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "received.h"
 #include "run_log.h"
-#include "validator.h"
+#include "sessions/received.h"
+#include "sessions/validator.h"
 
 #include <deque>
 #include <optional>

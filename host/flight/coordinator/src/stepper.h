@@ -1,9 +1,9 @@
 #pragma once
 
 #include "command_queue.h"
-#include "computer_load.h"
 #include "run_log.h"
 #include "sensors/sampler.h"
+#include "sessions/computer_load.h"
 #include "time/timelines.h"
 
 #include <cstddef>

@@ -1,5 +1,5 @@
 #include "coordinator_fixture.h"
-#include "validator.h"
+#include "sessions/validator.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "local_sut.h"
+#include "suts/local_sut.h"
 #include "warning_log.h"
 
 #include <algorithm>

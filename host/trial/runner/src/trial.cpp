@@ -1,7 +1,7 @@
 #include "drawing_threads.h"
-#include "local_sut.h"
 #include "machine_watch.h"
 #include "sizing_of.h"
+#include "suts/local_sut.h"
 #include "trial_run.h"
 #include "warning_log.h"
 

@@ -3,10 +3,10 @@
 #include "machine_watch.h"
 #include "refusals.h"
 #include "replayed_time.h"
-#include "stall_watch.h"
-#include "sut_environment.h"
-#include "sut_processes.h"
-#include "sut_watch.h"
+#include "suts/stall_watch.h"
+#include "suts/sut_environment.h"
+#include "suts/sut_processes.h"
+#include "suts/sut_watch.h"
 #include "trial_end.h"
 
 #include <memory>

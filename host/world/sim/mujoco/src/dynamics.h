@@ -1,7 +1,7 @@
 #pragma once
 
 #include "engine.h"
-#include "mesh_file.h"
+#include "meshes/mesh_file.h"
 
 #include <cstdint>
 #include <optional>

@@ -1,8 +1,8 @@
 #include "collision_rays.h"
 #include "dynamics.h"
+#include "meshes/usable_meshes.h"
 #include "renderer.h"
 #include "scene.h"
-#include "usable_meshes.h"
 
 #include <algorithm>
 #include <utility>

@@ -1,7 +1,7 @@
 #include "physics_model.h"
 
-#include "named_file.h"
-#include "triangle_mesh.h"
+#include "meshes/named_file.h"
+#include "meshes/triangle_mesh.h"
 
 #include <algorithm>
 #include <array>

@@ -3,8 +3,8 @@
 
 #include "scene.h"
 
-#include "named_file.h"
-#include "texture_file.h"
+#include "meshes/named_file.h"
+#include "meshes/texture_file.h"
 
 #include <algorithm>
 #include <map>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mesh_file.h"
+#include "meshes/mesh_file.h"
 
 #include <tether/sim/world.h>
 #include <tether/sim_raster/scene.h>
