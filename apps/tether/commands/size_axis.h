@@ -35,10 +35,8 @@ class SizeAxis {
   virtual bool add(std::size_t level, const campaign::TrialResult& trial) = 0;
   /// What to fly beside the search, once that has an answer.
   virtual std::vector<sizing::Wanted> also() const { return {}; }
-  /// @param is_interrupted before there was an answer: what is known from the flights so far.
-  virtual report::SizeAnswer answer(const campaign::Settings& settings,
-                                    const std::vector<std::string>& not_flown,
-                                    bool is_interrupted) = 0;
+  /// Of an interrupted search: what is known from the flights so far.
+  virtual report::SizeAnswer answer(const report::SearchOutcome& outcome) = 0;
 
  protected:
   /// Of this scenario, with a seed for each flight that may be flown.

@@ -64,7 +64,7 @@ int find(const SizeOptions& options, const std::stop_token& stop) {
   const int why = is_answered ? 0 : trials.say_why(end);
   if (!is_answered && !(is_interrupted && trials.flown() >= sizing::kLeastFlights)) return why;
   const report::SizeAnswer answer =
-      axis->answer(trials.settings(), trials.not_flown(), is_interrupted);
+      axis->answer({trials.settings(), trials.not_flown(), is_interrupted});
   write_answer(answer, out);
   if (!options.junit.empty())
     os::write_file_atomically(options.junit, report::to_junit(answer, out));

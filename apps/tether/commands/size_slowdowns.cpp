@@ -138,18 +138,14 @@ class SlowdownAxis final : public SizeAxis {
     for (sizing::Wanted& wanted : same) wanted.level += searched;
     return same;
   }
-  report::SizeAnswer answer(const campaign::Settings& settings,
-                            const std::vector<std::string>& not_flown,
-                            bool is_interrupted) override {
-    report_.settings = settings;
-    report_.not_flown = not_flown;
-    report_.is_interrupted = is_interrupted;
+  report::SizeAnswer answer(const report::SearchOutcome& outcome) override {
+    static_cast<report::SearchOutcome&>(report_) = outcome;
     sized_.front().sized.answer = sized_.front().sizing.latest();
     if (sized_.size() > 1) sized_.back().sized.answer = sized_.back().sizing.answer(true);
     for (auto& [sizing, sized, flown] : sized_)
       sized.curve = report::curve_points(sizing.curve(), report_.question);
     report_.synchronised = sized_.front().sized;
-    if (sized_.size() > 1 && !is_interrupted) report_.unsynchronised = sized_.back().sized;
+    if (sized_.size() > 1 && !report_.is_interrupted) report_.unsynchronised = sized_.back().sized;
     report_.pace = report::pace_near_answer(report_);
     return report::size_answer(report_);
   }
@@ -183,8 +179,10 @@ std::unique_ptr<SizeAxis> slowdown_axis(const SizeOptions& options) {
     refuse_option("--between",
                   fmt::format("{} times the factor of condition \"{}\" is more than {}.",
                               question.most, own.name, kLargestFactor));
-  report::SizeReport report{
-      .scenario = scenario.name, .question = question, .most_flights = options.max_trials};
+  report::SizeReport report;
+  report.scenario = scenario.name;
+  report.question = question;
+  report.most_flights = options.max_trials;
   for (const std::filesystem::path& target : options.targets)
     report.boards.push_back(board_of(shipped, target, scenario, own));
   std::vector<scenario::Condition> conditions = {own};

@@ -97,12 +97,8 @@ class UavsAxis final : public SizeAxis {
     if (!is_copy) search_.add(level, trial.outcome == campaign::Outcome::kGoalReached);
     return is_copy;
   }
-  report::SizeAnswer answer(const campaign::Settings& settings,
-                            const std::vector<std::string>& not_flown,
-                            bool is_interrupted) override {
-    report_.settings = settings;
-    report_.not_flown = not_flown;
-    report_.is_interrupted = is_interrupted;
+  report::SizeAnswer answer(const report::SearchOutcome& outcome) override {
+    static_cast<report::SearchOutcome&>(report_) = outcome;
     report_.answer = search_.answer();
     report_.pace = report::pace_at_limit(report_);
     return report::size_answer(report_);
@@ -122,15 +118,15 @@ std::unique_ptr<SizeAxis> uavs_axis(const SizeOptions& options) {
   require_shared_board(condition, all.name);
   const scenario::Computer& board = condition.computers[condition.seats.front().computer];
   const auto shipped = scenario::ShippedFiles::of_program(os::own_file());
-  return std::make_unique<UavsAxis>(
-      options, all,
-      report::UavsReport{.scenario = all.name,
-                         .named = shipped.name_of(scenario::ShippedKind::kScenario, all.file),
-                         .condition = condition.name,
-                         .board = board.name,
-                         .cores = board.cores,
-                         .question = question_of_uavs(options, all.uavs.size()),
-                         .most_flights = options.max_trials});
+  report::UavsReport report;
+  report.scenario = all.name;
+  report.most_flights = options.max_trials;
+  report.named = shipped.name_of(scenario::ShippedKind::kScenario, all.file);
+  report.condition = condition.name;
+  report.board = board.name;
+  report.cores = board.cores;
+  report.question = question_of_uavs(options, all.uavs.size());
+  return std::make_unique<UavsAxis>(options, all, std::move(report));
 }
 
 }  // namespace tether::app

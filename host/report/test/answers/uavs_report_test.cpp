@@ -13,12 +13,13 @@ using testing::StartsWith;
 
 /// Of up to four UAVs: the flights with each number of them, and how many reach the goal.
 UavsReport report_of(const std::vector<sizing::UavLevel>& levels, const std::string& digest = "") {
-  UavsReport report{.scenario = "four",
-                    .named = "/tests/four.toml",
-                    .condition = "one for all",
-                    .board = "obc",
-                    .question = {.most = 4},
-                    .most_flights = 300};
+  UavsReport report;
+  report.scenario = "four";
+  report.named = "/tests/four.toml";
+  report.condition = "one for all";
+  report.board = "obc";
+  report.question.most = 4;
+  report.most_flights = 300;
   for (const sizing::UavLevel& level : levels) {
     UavsPoint& point = report.points.emplace_back(UavsPoint{{level.uavs}, {}});
     for (std::size_t i = 0; i < level.flights; ++i) {

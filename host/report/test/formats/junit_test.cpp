@@ -111,7 +111,10 @@ TEST_F(Junit, OfASizeHasTheVerdictAndACaseForTheAnswerAndEachBoard) {
 }
 
 TEST_F(Junit, OfNumbersOfUavsHasTheVerdict) {
-  UavsReport report{.condition = "all", .board = "obc", .question = {.most = 2}};
+  UavsReport report;
+  report.condition = "all";
+  report.board = "obc";
+  report.question.most = 2;
   report.answer.too_many = 3;
   EXPECT_THAT(verdict_in(suites(to_junit(size_answer(report), out_))),
               StartsWith("It is not known whether this board carries 1 UAV"));

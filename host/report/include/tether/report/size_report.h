@@ -52,18 +52,26 @@ struct Board {
 };
 enum class BoardVerdict { kSuffices, kUndecided, kDoesNot };
 
-struct SizeReport {
-  std::string scenario;
-  sizing::Question question{};
+/// How the search ended, on both axes.
+struct SearchOutcome {
+  campaign::Settings settings{};
+  std::vector<std::string> not_flown{};  ///< one line for each flight that failed, with its reason
+  bool is_interrupted = false;           ///< before there was an answer
+};
+
+/// What the reports of both axes have.
+struct SearchReport : SearchOutcome {
+  std::string scenario{};
   std::size_t most_flights = 0;
+  PaceOrReason pace{};  ///< of the flight that is nearest to the answer
+};
+
+struct SizeReport : SearchReport {
+  sizing::Question question{};
   SizedCondition synchronised{};
   /// The same slowdowns and seeds without synchronisation.
   std::optional<SizedCondition> unsynchronised{};
   std::vector<Board> boards{};
-  PaceOrReason pace{};                   ///< of the flight whose slowdown is nearest to the answer
-  std::vector<std::string> not_flown{};  ///< one line for each flight that failed, with its reason
-  campaign::Settings settings{};
-  bool is_interrupted = false;  ///< before there was an answer
 };
 
 /// Whether programs waited or computed in ways that Tether does not see, so that there is no
@@ -109,22 +117,16 @@ struct UavsPoint {
   std::vector<campaign::TrialResult> trials{};
 };
 
-struct UavsReport {
-  std::string scenario{};
+/// Its pace is of a flight with the fewest UAVs that are too many or, if there are none, with the
+/// most that were flown.
+struct UavsReport : SearchReport {
   std::string named{};  ///< the scenario for a command line (scenario::ShippedFiles::name_of)
   std::string condition{};
   std::string board{};  ///< name of the target that the UAVs share
   int cores = 1;        ///< of the board
   sizing::UavQuestion question{};
-  std::size_t most_flights = 0;
   sizing::UavAnswer answer{};
   std::vector<UavsPoint> points{};  ///< in ascending order
-  /// Of a flight with the fewest UAVs that are too many or, if there are none, with the most that
-  /// were flown.
-  PaceOrReason pace{};
-  std::vector<std::string> not_flown{};  ///< one line for each flight that failed, with its reason
-  campaign::Settings settings{};
-  bool is_interrupted = false;  ///< before there was an answer
 };
 
 /// @return whether the flight is a copy of an earlier one, which does not count. @pre the trial did
