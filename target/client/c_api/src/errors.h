@@ -49,20 +49,22 @@ template <>
 inline constexpr std::size_t kFirstSize<tether_camera_model> = 80;
 template <>
 inline constexpr std::size_t kFirstSize<tether_image_info> = 32;
-template <>
-inline constexpr std::size_t kFirstSize<tether_imu_sample> = 96;
-template <>
-inline constexpr std::size_t kFirstSize<tether_range_sample> = 24;
-template <>
-inline constexpr std::size_t kFirstSize<tether_navsat_sample> = 96;
-template <>
-inline constexpr std::size_t kFirstSize<tether_magnetometer_sample> = 40;
-template <>
-inline constexpr std::size_t kFirstSize<tether_barometer_sample> = 32;
-template <>
-inline constexpr std::size_t kFirstSize<tether_odometry_sample> = 192;
-template <>
-inline constexpr std::size_t kFirstSize<tether_joint_state_sample> = 56;
+// Samples that are a plain struct in C: the kind in the names of the struct and of functions, the
+// type in C++, and the struct's first size. A row makes tether_read_KIND and tether_subscribe_KIND;
+// to_c() of samples.h converts.
+#define TETHER_SAMPLES(ROW)                 \
+  ROW(imu, ImuSample, 96)                   \
+  ROW(range, RangeSample, 24)               \
+  ROW(navsat, NavSatSample, 96)             \
+  ROW(magnetometer, MagnetometerSample, 40) \
+  ROW(barometer, BarometerSample, 32)       \
+  ROW(odometry, OdometrySample, 192)        \
+  ROW(joint_state, JointStateSample, 56)
+#define TETHER_FIRST_SIZE(kind, Sample, size) \
+  template <>                                 \
+  inline constexpr std::size_t kFirstSize<tether_##kind##_sample> = size;
+TETHER_SAMPLES(TETHER_FIRST_SIZE)
+#undef TETHER_FIRST_SIZE
 template <>
 inline constexpr std::size_t kFirstSize<tether_scan_model> = 64;
 template <>

@@ -208,44 +208,14 @@ tether_status tether_read_camera_into(tether_vehicle* vehicle, const char* senso
   });
 }
 
-tether_status tether_read_imu(tether_vehicle* vehicle, const char* sensor, tether_read_mode mode,
-                              tether_imu_sample* out, size_t size) noexcept {
-  return read_struct<tether::uav::ImuSample>(vehicle, sensor, mode, out, size);
-}
-
-tether_status tether_read_range(tether_vehicle* vehicle, const char* sensor, tether_read_mode mode,
-                                tether_range_sample* out, size_t size) noexcept {
-  return read_struct<tether::uav::RangeSample>(vehicle, sensor, mode, out, size);
-}
-
-tether_status tether_read_navsat(tether_vehicle* vehicle, const char* sensor, tether_read_mode mode,
-                                 tether_navsat_sample* out, size_t size) noexcept {
-  return read_struct<tether::uav::NavSatSample>(vehicle, sensor, mode, out, size);
-}
-
-tether_status tether_read_magnetometer(tether_vehicle* vehicle, const char* sensor,
-                                       tether_read_mode mode, tether_magnetometer_sample* out,
-                                       size_t size) noexcept {
-  return read_struct<tether::uav::MagnetometerSample>(vehicle, sensor, mode, out, size);
-}
-
-tether_status tether_read_barometer(tether_vehicle* vehicle, const char* sensor,
-                                    tether_read_mode mode, tether_barometer_sample* out,
-                                    size_t size) noexcept {
-  return read_struct<tether::uav::BarometerSample>(vehicle, sensor, mode, out, size);
-}
-
-tether_status tether_read_odometry(tether_vehicle* vehicle, const char* sensor,
-                                   tether_read_mode mode, tether_odometry_sample* out,
-                                   size_t size) noexcept {
-  return read_struct<tether::uav::OdometrySample>(vehicle, sensor, mode, out, size);
-}
-
-tether_status tether_read_joint_state(tether_vehicle* vehicle, const char* sensor,
-                                      tether_read_mode mode, tether_joint_state_sample* out,
-                                      size_t size) noexcept {
-  return read_struct<tether::uav::JointStateSample>(vehicle, sensor, mode, out, size);
-}
+#define TETHER_READ(kind, Sample, size)                                                \
+  tether_status tether_read_##kind(tether_vehicle* vehicle, const char* sensor,        \
+                                   tether_read_mode mode, tether_##kind##_sample* out, \
+                                   size_t out_size) noexcept {                         \
+    return read_struct<tether::uav::Sample>(vehicle, sensor, mode, out, out_size);     \
+  }
+TETHER_SAMPLES(TETHER_READ)
+#undef TETHER_READ
 
 tether_status tether_read_scan(tether_vehicle* vehicle, const char* sensor, tether_read_mode mode,
                                float* ranges_m, size_t capacity, tether_scan_info* info,

@@ -65,47 +65,14 @@ tether_status tether_subscribe_camera(tether_vehicle* vehicle, const char* senso
   return subscribe<tether::uav::CameraSample>(vehicle, sensor, on_image != nullptr, show, out);
 }
 
-tether_status tether_subscribe_imu(tether_vehicle* vehicle, const char* sensor,
-                                   tether_on_imu on_sample, void* user,
-                                   tether_subscription** out) noexcept {
-  return subscribe_struct<tether::uav::ImuSample>(vehicle, sensor, on_sample, user, out);
-}
-
-tether_status tether_subscribe_range(tether_vehicle* vehicle, const char* sensor,
-                                     tether_on_range on_sample, void* user,
-                                     tether_subscription** out) noexcept {
-  return subscribe_struct<tether::uav::RangeSample>(vehicle, sensor, on_sample, user, out);
-}
-
-tether_status tether_subscribe_navsat(tether_vehicle* vehicle, const char* sensor,
-                                      tether_on_navsat on_sample, void* user,
-                                      tether_subscription** out) noexcept {
-  return subscribe_struct<tether::uav::NavSatSample>(vehicle, sensor, on_sample, user, out);
-}
-
-tether_status tether_subscribe_magnetometer(tether_vehicle* vehicle, const char* sensor,
-                                            tether_on_magnetometer on_sample, void* user,
-                                            tether_subscription** out) noexcept {
-  return subscribe_struct<tether::uav::MagnetometerSample>(vehicle, sensor, on_sample, user, out);
-}
-
-tether_status tether_subscribe_barometer(tether_vehicle* vehicle, const char* sensor,
-                                         tether_on_barometer on_sample, void* user,
-                                         tether_subscription** out) noexcept {
-  return subscribe_struct<tether::uav::BarometerSample>(vehicle, sensor, on_sample, user, out);
-}
-
-tether_status tether_subscribe_odometry(tether_vehicle* vehicle, const char* sensor,
-                                        tether_on_odometry on_sample, void* user,
-                                        tether_subscription** out) noexcept {
-  return subscribe_struct<tether::uav::OdometrySample>(vehicle, sensor, on_sample, user, out);
-}
-
-tether_status tether_subscribe_joint_state(tether_vehicle* vehicle, const char* sensor,
-                                           tether_on_joint_state on_sample, void* user,
-                                           tether_subscription** out) noexcept {
-  return subscribe_struct<tether::uav::JointStateSample>(vehicle, sensor, on_sample, user, out);
-}
+#define TETHER_SUBSCRIBE(kind, Sample, size)                                             \
+  tether_status tether_subscribe_##kind(tether_vehicle* vehicle, const char* sensor,     \
+                                        tether_on_##kind on_sample, void* user,          \
+                                        tether_subscription** out) noexcept {            \
+    return subscribe_struct<tether::uav::Sample>(vehicle, sensor, on_sample, user, out); \
+  }
+TETHER_SAMPLES(TETHER_SUBSCRIBE)
+#undef TETHER_SUBSCRIBE
 
 tether_status tether_subscribe_scan(tether_vehicle* vehicle, const char* sensor,
                                     tether_on_scan on_scan, void* user,
