@@ -1,4 +1,5 @@
 #include "events.h"
+#include "robustness.h"
 #include "signals.h"
 #include "spans.h"
 
@@ -13,7 +14,6 @@
 
 #include <tether/base/text.h>
 #include <tether/judge/judge.h>
-#include <tether/stl/robustness.h>
 
 // A clause is judged in its span: the part of the run that it is about. Clauses about quantities
 // are formulas of STL; their inner part is evaluated at every instant, and the margin is its
@@ -252,12 +252,9 @@ class Judge {
     const bool at_most = clause.condition->at_most, is_never = clause.kind == Kind::kNever;
     const auto [known, is_new] = margins_.try_emplace({signal, at_most, is_never, clause.hold});
     if (!is_new) return known->second;
-    stl::Formula holds =
-        at_most ? stl::Formula::at_most(signal, 0.0) : stl::Formula::at_least(signal, 0.0);
-    if (is_never) holds = stl::Formula::negation(holds);
-    if (clause.hold > Duration(0)) holds = stl::Formula::always({Duration(0), clause.hold}, holds);
-    known->second = stl::Evaluator(signals_.trace()).robustness(holds);
-    return known->second;
+    const Trace& trace = signals_.trace();
+    return known->second =
+               robustness({at_most, is_never, clause.hold}, trace.signals[signal], trace.at);
   }
 
   void judge_signal(const Clause& clause, const Span& span, ClauseVerdict& verdict) {
@@ -293,7 +290,7 @@ class Judge {
     const std::size_t place =
         place_in(margins, is_eventually ? Pick::kBest : Pick::kAtShare, first, last, share);
     // Energy counts from the start of the span.
-    const std::vector<double>& values = signals_.trace().signals[*signal].values;
+    const std::vector<double>& values = signals_.trace().signals[*signal];
     const double before = clause.condition->quantity->counts_from_start() ? values[first] : 0.0;
     const double shift = shift_of(clause, before);
     settle(margins[place] + shift, clause, verdict);

@@ -131,23 +131,23 @@ Signals::Signals(const std::string& uav, const record::Record& record)
 
 // The record has it at each ground truth, or not at all.
 std::optional<std::size_t> Signals::of_battery(const mission::Quantity& quantity) {
-  stl::Signal signal{std::string(quantity.name), {}};
+  std::vector<double> signal;
   for (const auto& [at, order, battery] : record_.batteries) {
     if (battery.uav != uav_) continue;
     const double value = quantity.name == "energy_j" ? battery.spent_j() : battery.charge;
-    if (!std::isfinite(value) || signal.values.size() == trace_.at.size() ||
-        battery.at != trace_.at[signal.values.size()])
+    if (!std::isfinite(value) || signal.size() == trace_.at.size() ||
+        battery.at != trace_.at[signal.size()])
       return std::nullopt;
-    signal.values.push_back(value);
+    signal.push_back(value);
   }
-  if (signal.values.size() != trace_.at.size()) return std::nullopt;
+  if (signal.size() != trace_.at.size()) return std::nullopt;
   trace_.signals.push_back(std::move(signal));
   return trace_.signals.size() - 1;
 }
 
 // The record has the messages in the order of `at`.
 std::size_t Signals::of_radio(const mission::Quantity& quantity) {
-  stl::Signal signal{std::string(quantity.name), {}};
+  std::vector<double> signal;
   const bool is_age = quantity.name == "information_age";
   std::size_t next = 0;
   double ended = 0.0, delivered = 0.0;
@@ -167,8 +167,8 @@ std::size_t Signals::of_radio(const mission::Quantity& quantity) {
       delivered += has_arrived ? 1.0 : 0.0;
     }
     const double ratio = ended > 0.0 ? delivered / ended : 1.0;
-    signal.values.push_back(is_age ? to_seconds(at - newest) : ratio);
-    if (!(is_age ? has_arrived_here : ended > 0.0)) known_from = signal.values.size();
+    signal.push_back(is_age ? to_seconds(at - newest) : ratio);
+    if (!(is_age ? has_arrived_here : ended > 0.0)) known_from = signal.size();
   }
   trace_.signals.push_back(std::move(signal));
   return trace_.signals.size() - 1;
@@ -182,11 +182,11 @@ std::optional<std::size_t> Signals::find(const mission::Condition& condition) {
   if (truths_.empty()) return std::nullopt;
   const auto reference = Reference::of(condition, *truths_.front(), record_);
   if (!reference) return std::nullopt;
-  stl::Signal signal{std::string(condition.quantity->name), {}};
+  std::vector<double> signal;
   for (const GroundTruth* truth : truths_) {
     const auto value = value_of(*condition.quantity, *truth, *reference);
     if (!value) return std::nullopt;
-    signal.values.push_back(*value);
+    signal.push_back(*value);
   }
   known->second = trace_.signals.size();
   trace_.signals.push_back(std::move(signal));

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "robustness.h"
+
 #include <map>
 #include <optional>
 #include <string>
@@ -7,7 +9,6 @@
 
 #include <tether/mission/mission.h>
 #include <tether/record/reader.h>
-#include <tether/stl/robustness.h>
 
 namespace tether::judge {
 
@@ -38,7 +39,7 @@ class Signals {
 
   /// Index in the trace; none if the record does not have it at every instant.
   std::optional<std::size_t> find(const mission::Condition& condition);
-  const stl::Trace& trace() const { return trace_; }
+  const Trace& trace() const { return trace_; }
   /// The first instant at which the signal has any evidence; the trace's size: none.
   std::size_t known_from(std::size_t signal) const {
     const auto found = known_from_.find(signal);
@@ -52,7 +53,7 @@ class Signals {
   std::string uav_;
   const record::Record& record_;
   std::vector<const record::GroundTruth*> truths_;
-  stl::Trace trace_;
+  Trace trace_;
   std::map<std::size_t, std::size_t> known_from_;  ///< of radio
   std::map<std::pair<std::string_view, std::string>, std::optional<std::size_t>> known_;
 };

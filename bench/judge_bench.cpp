@@ -14,7 +14,6 @@
 #include <tether/judge/judge.h>
 #include <tether/mission/mission.h>
 #include <tether/record/reader.h>
-#include <tether/stl/robustness.h>
 #include <tether/toml/table.h>
 
 namespace {
@@ -25,32 +24,22 @@ using namespace std::chrono_literals;
 constexpr int kClauses = 1'000;
 constexpr std::size_t kInstants = 60'000;
 
-stl::Trace ten_minutes() {
-  stl::Trace trace;
-  trace.signals.push_back({"m", {}});
+/// Every 10 ms.
+std::vector<double> ten_minutes() {
+  std::vector<double> values;
   for (std::size_t i = 0; i < kInstants; ++i) {
-    trace.at.emplace_back(static_cast<std::int64_t>(i) * 10ms);
     const double t_s = 0.01 * static_cast<double>(i);
-    trace.signals[0].values.push_back(1.5 + std::sin(t_s) + 0.1 * std::sin(97.0 * t_s));
+    values.push_back(1.5 + std::sin(t_s) + 0.1 * std::sin(97.0 * t_s));
   }
-  return trace;
-}
-
-void judge(benchmark::State& state, const stl::Formula& formula) {
-  const stl::Trace trace = ten_minutes();
-  for (auto _ : state) {
-    stl::Evaluator evaluator(trace);
-    for (int clause = 0; clause < kClauses; ++clause)
-      benchmark::DoNotOptimize(evaluator.robustness_at(formula, 0));
-  }
+  return values;
 }
 
 void yardstick(benchmark::State& state) {
-  const stl::Trace trace = ten_minutes();
+  const std::vector<double> values = ten_minutes();
   for (auto _ : state) {
     for (int clause = 0; clause < kClauses; ++clause) {
       double least = std::numeric_limits<double>::infinity();
-      for (const double value : trace.signals[0].values) least = std::min(least, value);
+      for (const double value : values) least = std::min(least, value);
       benchmark::DoNotOptimize(least);
     }
   }
@@ -62,15 +51,16 @@ record::Record flight() {
   record.header.policy = record::kConservativeBarrier;
   record.header.sensors.emplace_back().uav = "uav1";
   record.header.sensors.back().name = record.header.sensors.back().kind = "camera";
-  const stl::Trace trace = ten_minutes();
+  const std::vector<double> heights_m = ten_minutes();
+  const SimTime last(static_cast<std::int64_t>(kInstants - 1) * 10ms);
   for (std::size_t i = 0; i < kInstants; ++i) {
     record::GroundTruth truth;
     truth.uav = "uav1";
-    truth.at = trace.at[i];
-    truth.p_WB_m[2] = trace.signals[0].values[i];
+    truth.at = SimTime(static_cast<std::int64_t>(i) * 10ms);
+    truth.p_WB_m[2] = heights_m[i];
     record.ground_truth.push_back({truth.at, 0, truth});
   }
-  for (SimTime at; at < trace.at.back() - 33ms; at += 33ms) {
+  for (SimTime at; at < last - 33ms; at += 33ms) {
     record::Interaction call;
     call.uav = "uav1";
     call.kind = record::kSensor;
@@ -84,7 +74,7 @@ record::Record flight() {
     call.effect_at = at + 21ms;
     record.interactions.push_back({at, 0, call});
   }
-  record.footer.emplace().st_at_end = trace.at.back();
+  record.footer.emplace().st_at_end = last;
   return record;
 }
 
@@ -110,13 +100,6 @@ BENCHMARK_CAPTURE(judge_mission, reaction, "always = \"reaction_time <= ", " s i
 BENCHMARK_CAPTURE(judge_mission, deadline, "name = \"", "\"\nwithin_s = 700\n")
     ->Unit(benchmark::kMillisecond);
 
-const stl::Formula kCondition = stl::Formula::at_least(0, 0.3);
-
 BENCHMARK(yardstick)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(judge, always, stl::Formula::always({}, kCondition))
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(judge, eventually_for_5_s,
-                  stl::Formula::eventually({}, stl::Formula::always({0s, 5s}, kCondition)))
-    ->Unit(benchmark::kMillisecond);
 
 }  // namespace
