@@ -8,7 +8,7 @@
 #include <pthread.h>
 #include <unistd.h>
 
-#include <tether/os/clock.h>
+#include <tether/os/machine.h>
 
 namespace tether::as_is {
 namespace {
