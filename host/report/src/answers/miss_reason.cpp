@@ -141,6 +141,25 @@ std::string unscaled_computing(const Compared& missed, const std::vector<Compare
   return "";
 }
 
+/// That the time limit ended a flight which had missed nothing else yet; empty: it is not so.
+std::string cut_short(const campaign::TrialResult& flight, const std::optional<Pace>&) {
+  if (flight.end != campaign::kEndTimeLimit) return "";
+  const auto is_missed = [](const judge::ClauseVerdict& one) {
+    return !one.met && one.margin && *one.margin < 0.0;
+  };
+  const campaign::MetricValue* later = nullptr;
+  for (const campaign::MetricValue& metric : flight.metrics) {
+    if (metric.value && !metric.is_met()) return "";
+    if (metric.name == "time_required" && metric.max > to_seconds(flight.sync.st_at_end))
+      later = &metric;
+  }
+  if (later == nullptr || std::ranges::any_of(flight.clauses, is_missed)) return "";
+  return fmt::format(
+      "the time limit ended the flight at {:.4g} s, before {} of at most {:g} s "
+      "could be missed",
+      to_seconds(flight.sync.st_at_end), in_a_sentence(later->label), *later->max);
+}
+
 /// What is so in each flight that missed the goal, as of the first one; empty: there is nothing.
 template <class Find>
 std::string in_each(const Compared& missed, const Find& find) {
@@ -191,6 +210,8 @@ MissReason compared(Evidence evidence, const Compared& other, const Compared& mi
 
 MissReason reason_of(const Compared& missed, const std::vector<Compared>& all,
                      std::size_t comparisons) {
+  if (const std::string cut = in_each(missed, cut_short); !cut.empty())
+    return {Evidence::kPossibleCause, "", cut};
   std::vector<const Compared*> faster;
   for (const Compared& other : all)
     if (is_evidence(*other.verdict) && is_faster(other, missed) &&

@@ -68,6 +68,25 @@ TEST_F(MissReasons, CountTheOwnGoalOfEachProgram) {
                              HasSubstr("but meets the own goal of uav2's program.")));
 }
 
+TEST_F(MissReasons, CanBeATimeLimitBelowTheMetricsAlsoIfAFasterOneReachesTheGoal) {
+  const std::size_t board = add("board", 0, 5, measured(0.2));
+  program(board).clock.factor = 10.0;
+  add("host", 5, 0, measured(0.02));
+  EXPECT_EQ(ruling(board), Ruling::kNotFastEnough);
+  for (campaign::TrialResult& trial : trials(board)) {
+    trial.end = campaign::kEndTimeLimit;
+    trial.sync.st_at_end = SimTime(std::chrono::seconds(5));
+    trial.metrics = {{"time_required", "time_required", "Time required", "s", {}, "", {}}};
+    trial.metrics[0].max = 20.0;
+  }
+  EXPECT_EQ(ruling(board), Ruling::kGoalMissed);
+  EXPECT_THAT(verdict().conditions[board].miss->text,
+              HasSubstr("the time limit ended the flight at 5 s, before time required of at most "
+                        "20 s could be missed"));
+  for (campaign::TrialResult& trial : trials(board)) trial.metrics[0].max = 4.0;
+  EXPECT_EQ(ruling(board), Ruling::kNotFastEnough);
+}
+
 TEST_F(MissReasons, CanBeAnEmptyBattery) {
   const std::size_t board = add("board", 0, 5, measured(0.2));
   for (campaign::TrialResult& trial : trials(board)) {

@@ -138,12 +138,19 @@ Motion motion_of(const record::Record& record, const std::string& uav) {
 void check_commands(const record::Record& record, const Motion& motion, const std::string& uav,
                     std::vector<Warning>& warnings) {
   for (const auto& logged : record.annotations) {
-    if (logged.message.uav != uav || logged.message.topic != uav::kRefusedCommands) continue;
+    if (logged.message.uav != uav || logged.message.topic != uav::kClientReport) continue;
     const auto told = nlohmann::json::parse(logged.message.json, nullptr, false);
-    if (told.is_object() && told.value("count", 0U) > 0)
+    if (!told.is_object()) continue;
+    if (const std::size_t refused = told.value("refused_commands", 0U); refused > 0)
       warnings.push_back(doubt_about(
           uav, fmt::format("was not given {} of its program, which Tether's library refused",
-                           counted(told.value("count", 0U), "command"))));
+                           counted(refused, "command"))));
+    if (const double uncharged_ms = told.value("uncharged_ms", 0.0); uncharged_ms > 0.0)
+      warnings.push_back(doubt_about(
+          uav,
+          fmt::format("has a program whose other threads computed {:.3g} s during calls, which the "
+                      "clock \"cpu\" does not charge",
+                      uncharged_ms * 1e-3)));
   }
   const auto is_own = [&](const auto& logged) { return logged.message.uav == uav; };
   const auto moves = [&](const auto& logged) {

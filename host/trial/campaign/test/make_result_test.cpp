@@ -250,8 +250,12 @@ TEST_F(MakeResult, CommandsThatHadNoEffectAreDoubtful) {
   EXPECT_THAT(doubts(kReached), HasSubstr("was commanded nothing but to stay"));
   record.ground_truth.back().message.p_WB_m[0] += 1.0;
   EXPECT_EQ(doubts(kReached), "") << "it moved";
-  record.annotations.push_back({{}, 0, {"uav1", {}, uav::kRefusedCommands, R"({"count": 20})"}});
+  record.annotations.push_back(
+      {{},
+       0,
+       {"uav1", {}, uav::kClientReport, R"({"refused_commands": 20, "uncharged_ms": 2130})"}});
   EXPECT_THAT(doubts(kReached), HasSubstr("was not given 20 commands of its program"));
+  EXPECT_THAT(doubts(kReached), HasSubstr("other threads computed 2.13 s during calls"));
   record.annotations.clear();
   command.loss = "land";
   EXPECT_THAT(doubts(kReached), HasSubstr("had no new set-point for too long once, at ST 0.000 s"));

@@ -9,8 +9,10 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include <pthread.h>
+#include <sys/single_threaded.h>
 
 #include <tether/client/sut_clock.h>
 #include <tether/os/machine.h>
@@ -39,6 +41,10 @@ class WallSource final : public TimeSource {
   Duration origin_ = read_clock(CLOCK_MONOTONIC);  // small numbers lose nothing when scaled
 };
 
+Duration of_other_threads() {
+  return read_clock(CLOCK_PROCESS_CPUTIME_ID) - read_clock(CLOCK_THREAD_CPUTIME_ID);
+}
+
 // Of the calling thread, by leave_out and for looking at children.
 thread_local Duration t_left_out __attribute__((tls_model("initial-exec"))){0};
 
@@ -50,6 +56,8 @@ class CpuSource final : public TimeSource {
   Duration elapsed() const override;
   Duration elapsed_at_resume() const override;
   Duration elapsed_in_children() const override;
+  void hold() const override;
+  Duration computed_beside() const override;
   Status complete() const override;
   void leave_out(Duration computed) override {
     const std::lock_guard lock(mutex_);
@@ -77,6 +85,8 @@ class CpuSource final : public TimeSource {
   mutable Duration newest_own_{0};
   mutable Duration newest_children_{0};
   mutable std::optional<pid_t> deaf_;
+  mutable std::optional<Duration> others_at_hold_;
+  mutable Duration beside_{0};
   std::optional<clockid_t> excluded_clock_;
   pthread_t excluded_thread_{};  // if there is excluded_clock_
   // What excluded threads used, without the present one's clock, and looking at children.
@@ -101,9 +111,21 @@ Duration CpuSource::elapsed() const {
 
 Duration CpuSource::elapsed_at_resume() const {
   const std::lock_guard lock(mutex_);
+  if (const auto since = std::exchange(others_at_hold_, std::nullopt))
+    beside_ += std::max(Duration(0), of_other_threads() - *since);
   read_children();
   read_own();
   return scaled(newest_own_ + newest_children_, factor_);
+}
+
+void CpuSource::hold() const {
+  const std::lock_guard lock(mutex_);
+  if (__libc_single_threaded == 0) others_at_hold_ = of_other_threads();
+}
+
+Duration CpuSource::computed_beside() const {
+  const std::lock_guard lock(mutex_);
+  return scaled(beside_, factor_);
 }
 
 Duration CpuSource::elapsed_in_children() const {

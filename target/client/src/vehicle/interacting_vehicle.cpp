@@ -44,6 +44,10 @@ Failure protocol_failure(const std::string& what) {
   return {Failure::Kind::kProtocol, "protocol violation in the coordinator's reply: " + what};
 }
 
+// As much as makes an unseen wait doubtful.
+constexpr std::int64_t kLeastUncharged_ms = 100;
+constexpr std::int64_t kLeastShareUncharged = 100;  // one part in
+
 Failure mission_finished() {
   return {Failure::Kind::kInvalid, "the mission is finished; no more calls are possible"};
 }
@@ -272,12 +276,18 @@ Status InteractingVehicle::commanded(Status status) {
   return status;
 }
 
-// Who ignores that commands are refused may say that it has reached its goal.
+// A program may ignore both, and say that it has reached its goal.
 Status InteractingVehicle::finish(bool reached_goal, std::string_view outcome,
                                   std::string_view details_json) {
-  if (refused_commands_ > 0)
-    if (const Status noted = annotate(uav::kRefusedCommands,
-                                      "{\"count\": " + std::to_string(refused_commands_) + "}");
+  const auto uncharged_ms =
+      std::chrono::duration_cast<std::chrono::milliseconds>(computed_beside()).count();
+  const bool is_uncharged = uncharged_ms >= kLeastUncharged_ms &&
+                            computed_beside() * kLeastShareUncharged > now().time_since_epoch();
+  if (refused_commands_ > 0 || is_uncharged)
+    if (const Status noted = annotate(
+            uav::kClientReport,
+            "{\"refused_commands\": " + std::to_string(refused_commands_) +
+                ", \"uncharged_ms\": " + std::to_string(is_uncharged ? uncharged_ms : 0) + "}");
         !noted)
       return noted;
   Status done = status_of(

@@ -67,6 +67,8 @@ class InteractingVehicle : public Vehicle {
   /// One interaction, from stamping the request to going on after its reply. After one that
   /// finishes the mission, `over` is set.
   virtual Result<link::Reply> interact(Body body) = 0;
+  /// As TimeSource has it.
+  virtual Duration computed_beside() const { return Duration::zero(); }
   /// The mission is finished: lets go of the coordinator.
   virtual void close() = 0;
 

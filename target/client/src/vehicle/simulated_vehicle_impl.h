@@ -49,6 +49,7 @@ class SimulatedVehicle final : public InteractingVehicle {
   };
 
   Result<link::Reply> interact(Body body) override;
+  Duration computed_beside() const override { return source_->computed_beside(); }
   void close() override;
 
   /// What the calls do during their Call.

@@ -68,6 +68,22 @@ TEST(CpuSource, CountsEveryThreadExceptAnExcludedOne) {
   EXPECT_GE(source->elapsed() - begin, kBusy);
 }
 
+TEST(CpuSource, KnowsWhatOtherThreadsComputeDuringACall) {
+  const auto source = make_cpu_source(2.0);
+  std::thread worker([] { compute(30ms); });  // from now on, there can be several
+  worker.join();
+  EXPECT_EQ(source->computed_beside(), Duration(0)) << "no call";
+  source->hold();
+  compute(30ms);
+  source->elapsed_at_resume();
+  EXPECT_LT(source->computed_beside(), 10ms) << "the thread that calls";
+  source->hold();
+  std::thread([] { compute(30ms); }).join();
+  source->elapsed_at_resume();
+  EXPECT_GE(source->computed_beside(), 60ms);
+  EXPECT_LT(source->computed_beside(), 80ms);
+}
+
 TEST(CpuSource, IsMonotoneWhileAnExcludedThreadRuns) {
   const auto source = make_cpu_source(1.0);
   std::thread library([&source] {

@@ -285,8 +285,8 @@ TEST_F(SimulatedVehicleTest, SaysAtItsEndHowManyCommandsItRefused) {
   const auto heard = coordinator_->heard();
   ASSERT_EQ(heard.size(), 2u);
   const auto& annotation = std::get<link::Annotation>(heard[0]);
-  EXPECT_EQ(annotation.topic, uav::kRefusedCommands);
-  EXPECT_EQ(annotation.json, R"({"count": 3})");
+  EXPECT_EQ(annotation.topic, uav::kClientReport);
+  EXPECT_EQ(annotation.json, R"({"refused_commands": 3, "uncharged_ms": 0})");
 }
 
 TEST_F(SimulatedVehicleTest, ReportsTheLastRoundTrip) {

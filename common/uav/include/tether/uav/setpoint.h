@@ -120,8 +120,9 @@ inline constexpr std::size_t kMaxTrajectorySetpoints = 1024;
 inline constexpr Duration kLongestTrajectory = std::chrono::hours(1);
 
 /// Topic of an annotation with which the library's programs end if it refused commands of theirs,
-/// which were invalid: {"count": 20}.
-inline constexpr const char* kRefusedCommands = "refused_commands";
+/// which were invalid, or if other threads computed during calls, which a clock of CPU time does
+/// not charge: {"refused_commands": 20, "uncharged_ms": 0}, the latter in execution time.
+inline constexpr const char* kClientReport = "client_report";
 
 /// What a flight controller does when no command has arrived for too long.
 enum class LossAction {

@@ -95,11 +95,6 @@ Metric read_metric(const toml::Table& table, const Scenario& scenario) {
                  fmt::format("is {:g}, which nothing can miss. Give a limit that a bad flight "
                              "misses, or remove the key.",
                              value));
-    // Who misses the time limit has not missed this one.
-    if (metric.kind == "time_required" && value > to_seconds(scenario.time_limit))
-      table.fail(limit, fmt::format("is {:g}, but time_limit_s = {:g} ends every flight before. "
-                                    "Give a smaller limit, or a longer time limit.",
-                                    value, to_seconds(scenario.time_limit)));
   }
   return metric;
 }

@@ -23,6 +23,9 @@ class TimeSource {
   virtual Duration elapsed_at_resume() const { return elapsed(); }
   /// The SUT has read its stamp, and waits for a reply until `elapsed_at_resume()`.
   virtual void hold() const {}
+  /// What other threads of the process have computed between hold() and elapsed_at_resume(),
+  /// scaled, if that is measured and counted nowhere else.
+  virtual Duration computed_beside() const { return Duration::zero(); }
   /// The part of the last `elapsed()` that processes started by the SUT's have computed. Monotone.
   virtual Duration elapsed_in_children() const { return Duration::zero(); }
   /// Of a replayed source: the SUT has computed for so long.
