@@ -176,7 +176,7 @@ TEST_F(OnABoard, AProgramAsItIsReadsItsCameraThere) {
       file,
       "name = \"as_is\"\nworld = \"yard\"\ntime_limit_s = 20\n[[uav]]\nname = \"uav1\"\nmodel = "
       "\"hummingbird\"\nposition_m = [0.0, 0.0, 0.1]\nprofile = \"paper_streaming\"\n"
-      "[sut]\ncommand = [\"camera_program\"]\nas_is = true\nall_processes = true\n"
+      "[sut]\ncommand = [\"camera_program\", \"late\"]\nas_is = true\nall_processes = true\n"
       "[[condition]]\nname = \"c\"\npolicy = \"conservative_barrier\"\nclock = \"cpu\"\n");
   expect_good(on_board(
       tether({"run", file, "--quiet", "--target", board_.address(), "--out", out_}, mark_)));

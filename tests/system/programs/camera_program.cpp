@@ -1,5 +1,7 @@
 // A program that knows nothing of Tether: reads /dev/video0 by V4L2 in each way that there is, and
 // prints what it saw: "NAME VALUE…", times in µs. Exit code 1: something that must not fail did.
+//
+// usage: camera_program [late]; late: by its clock, others may hold it up between two images
 #include <array>
 #include <cerrno>
 #include <cstdio>
@@ -21,6 +23,8 @@ namespace {
 
 constexpr unsigned kBuffers = 4;
 constexpr unsigned kType = V4L2_BUF_TYPE_VIDEO_CAPTURE;
+
+bool may_be_late = false;
 
 long now_us() {
   timespec t{};
@@ -99,7 +103,7 @@ void wait_in_each_way(int fd) {
   must(take(fd, "select", begun) == 0, "after select");
   begun = now_us();
   pollfd entry{fd, POLLIN, 0};
-  must(poll(&entry, 1, 5) == 0, "an image too early");
+  must(poll(&entry, 1, 5) == 0 || may_be_late, "an image too early");
   must(poll(&entry, 1, -1) == 1 && (entry.revents & POLLIN) != 0, "poll");
   must(take(fd, "poll", begun) == 0, "after poll");
   begun = now_us();
@@ -108,7 +112,7 @@ void wait_in_each_way(int fd) {
   must(epoll_ctl(epoll, EPOLL_CTL_ADD, fd, &event) == 0, "epoll_ctl");
   must(epoll_wait(epoll, &event, 1, 1000) == 1, "epoll");
   must(take(fd, "epoll", begun) == 0, "after epoll");
-  must(take(fd, "", 0) == EAGAIN, "an image without waiting");
+  must(take(fd, "", 0) == EAGAIN || may_be_late, "an image without waiting");
   begun = now_us();
   must(fcntl(fd, F_SETFL, fcntl(fd, F_GETFL) & ~O_NONBLOCK) == 0, "F_SETFL");
   must(take(fd, "blocking", begun) == 0, "blocking");
@@ -124,7 +128,8 @@ void overflow(int fd) {
 
 }  // namespace
 
-int main() {
+int main(int argc, char**) {
+  may_be_late = argc > 1;
   struct stat status {};
   must(stat("/dev/video0", &status) == 0 && S_ISCHR(status.st_mode), "stat");
   must(access("/dev/video0", R_OK | W_OK) == 0, "access");

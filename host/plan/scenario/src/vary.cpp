@@ -68,8 +68,11 @@ void change_paths(const Variation& variation, double value, sim::World& world) {
                                 "with [[moving]]",
                                 variation.of));
   for (sim::Model& model : world.models)
-    if (model.path && (model.name == variation.of || is_nested_in(model, variation.of)))
+    if (model.path && (model.name == variation.of || is_nested_in(model, variation.of))) {
       quantity_of(variation).change(world, nullptr, &model, nullptr, value);
+      if (const std::string wrong = complaint_about(*model.path); !wrong.empty())
+        fail(variation, fmt::format("gives {:.6g}: the path of '{}' {}", value, model.name, wrong));
+    }
 }
 
 /// With the model or UAV of that name.

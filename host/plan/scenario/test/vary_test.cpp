@@ -69,6 +69,8 @@ TEST(Vary, PathsAndWindVaryWhereThereAreAny) {
     sim::World still = world();
     EXPECT_THROW(vary({one}, 1, false, still), Error) << one.quantity;
   }
+  EXPECT_THROW(vary({of("path_time_factor", "pillar", OneOf{{0.001}})}, 1, false, moving), Error)
+      << "1,500 m/s";
 }
 
 TEST(Vary, EachDistributionHasItsMoments) {

@@ -278,7 +278,7 @@ bool Pace::reads_nearly_every() const {
 }
 
 bool Pace::keeps_up() const {
-  return reads_nearly_every() && behind < kHardlyEver;
+  return reads_nearly_every() && behind < kHardlyEver && unqueued.empty();
 }
 
 bool Pace::is_too_slow_for_camera() const {

@@ -53,6 +53,9 @@ std::string pace_text(const Pace& pace) {
     text += fmt::format("{}set-points are sent {} times a second", text.empty() ? "" : ", ",
                         rate_text(pace.setpoint_hz)) +
             gap_text(pace);
+  for (const Pace::Unqueued& queue : pace.unqueued)
+    text += fmt::format("{}{} of “{}” of {} had no place in its queue", text.empty() ? "" : ", ",
+                        counted(queue.count, "measurement"), queue.sensor, queue.uav);
   if (!pace.stages.empty())
     text += fmt::format("{}“{}” takes {} of the computing time", text.empty() ? "" : ", and ",
                         pace.stages.front().stage, share_text(pace.stages.front().share));

@@ -45,6 +45,8 @@ TEST(Verdict, SaysHowOftenSetpointsWereLost) {
     };
     EXPECT_THAT(answer(), HasSubstr("10 times a second (but for up to 2500 ms not at all)"));
     pace.setpoint_gap_s = 0.2;
+    pace.unqueued = {{"uav1", "imu", 12}};
+    EXPECT_THAT(answer(), HasSubstr("12 measurements of “imu” of uav1 had no place in its queue"));
     EXPECT_THAT(answer(), testing::Not(HasSubstr("not at all")));
     pace.losses = {2, SimTime(std::chrono::milliseconds(3201)), "uav1", "hover"};
     // Of a flight that reached the goal, campaign makes a doubt of it.

@@ -92,6 +92,12 @@ void fields(auto& io, Maybe<timing::Pace::Losses> auto& m) {
   io("action", m.action);
 }
 
+void fields(auto& io, Maybe<timing::Pace::Unqueued> auto& m) {
+  io("uav", m.uav);
+  io("sensor", m.sensor);
+  io("count", m.count);
+}
+
 /// Without the seed, which the result has.
 void fields(auto& io, Maybe<timing::Pace> auto& m) {
   io("uav", m.uav);
@@ -112,6 +118,7 @@ void fields(auto& io, Maybe<timing::Pace> auto& m) {
     io("setpoint_gap_s", m.setpoint_gap_s);
   }
   if (io.has("losses", m.losses.count > 0)) io("losses", m.losses);
+  io.some("unqueued", m.unqueued);
   io("shares_real_board", m.shares_real_board);
   if (io.has("shared_board", !m.shared_board.empty())) {
     io("shared_board", m.shared_board);

@@ -137,6 +137,7 @@ TEST_F(Result, ReadsBackWithEveryOptionalPart) {
                              .messages_arrived = 6};
   trial_.pace->setpoint_hz = 12.5;
   trial_.pace->setpoint_gap_s = 0.5;
+  trial_.pace->unqueued = {{"uav1", "imu", 12}};
   trial_.pace->losses = {2, SimTime(std::chrono::milliseconds(3201)), "uav1", "hover"};
   trial_.pace->speed = {.programs = {{.uav = "uav1",
                                       .clock = trial_.clock,

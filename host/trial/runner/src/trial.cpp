@@ -99,6 +99,10 @@ campaign::TrialResult evaluate(const TrialSpec& spec, const Conducted& conducted
   auto result = campaign::make_result(spec.scenario, spec.condition, conducted.record,
                                       task_ends(spec, report));
   result.this_run.wall = report.wall;
+  if (result.pace)
+    for (const coordinator::SutReport& sut : report.suts)
+      for (const auto& [sensor, count] : sut.unqueued)
+        result.pace->unqueued.push_back({sut.uav, sensor, count});
   if (conducted.target && is_recorded)
     result.this_run.target = report_of(*conducted.target, conducted.target_after, result.reason);
   const audit::Verdict verdict = audit::audit(conducted.record);

@@ -383,10 +383,11 @@ TrialEnd TrialRun::fly(std::optional<MachineWatch>& machine) {
   notes_ = stalls.notes(host_clocks());
   for (const coordinator::SutReport& sut : end.report.suts)
     for (const auto& [sensor, count] : sut.unqueued)
-      notes_.push_back(
-          fmt::format("in free running nothing waits: {} measurements of '{}' of {} "
-                      "had no place in its queue",
-                      count, sensor, sut.uav));
+      notes_.push_back(fmt::format("{}{} measurements of '{}' of {} had no place in its queue",
+                                   spec_.condition.policy == scenario::Policy::kFreeRunning
+                                       ? "in free running nothing waits: "
+                                       : "",
+                                   count, sensor, sut.uav));
   return end;
 }
 

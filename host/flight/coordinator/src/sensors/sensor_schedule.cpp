@@ -142,9 +142,12 @@ std::uint64_t SensorSchedule::oldest_unread(const uav::PeriodicTiming& timing, S
 
 // A queue fills from the first read on.
 std::uint64_t SensorSchedule::unqueued(const Measurement& measurement, std::uint32_t queue) const {
-  if (!std::holds_alternative<Topic>(timing_) || unread_ == 0) return 0;
+  const bool waits = std::holds_alternative<uav::PeriodicTiming>(timing_);
+  if (!is_periodic() || unread_ == 0 || queue < 2) return 0;
+  const std::uint64_t begin = waits ? std::max(unread_, queued_from_.value_or(0)) : unread_;
   std::uint64_t count = 0;
-  for (std::uint64_t k = std::max(measurement.index, unread_); k-- > unread_ && count + 1 < queue;)
+  for (std::uint64_t k = std::max(measurement.index, begin);
+       k-- > begin && (waits || count + 1 < queue);)
     if (!driver_.loses(k)) ++count;
   return count;
 }

@@ -47,8 +47,8 @@ class SensorSchedule {
   /// periodic.
   std::optional<Measurement> choose_available(SimTime t, bool latest) const;
   bool is_read(std::uint64_t index) const { return index < unread_; }
-  /// How many unread measurements before this one a queue would have had, of that depth. Only in
-  /// free running, where nothing waits.
+  /// How many unread measurements before this one had no place in a queue of that depth. In free
+  /// running, where nothing waits: how many it would have had.
   std::uint64_t unqueued(const Measurement& measurement, std::uint32_t queue) const;
   /// Marks it as read.
   void mark_read(const Measurement& measurement);

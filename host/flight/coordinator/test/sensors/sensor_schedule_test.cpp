@@ -76,7 +76,7 @@ TEST(SensorSchedule, FreeRunningReadsGetTheStateAtOnceOncePerPeriod) {
 }
 
 // Measurements 2 and 3 passed by, of which a queue of 2 has one.
-TEST(SensorSchedule, FreeRunningCountsWhatAQueueWouldHaveHad) {
+TEST(SensorSchedule, CountsWhatHadNoPlaceInAQueue) {
   SensorSchedule free = SensorSchedule::in_free_running(every_33_ms(milliseconds(10)));
   const Measurement later{4, ms(150), ms(150)};
   EXPECT_EQ(free.unqueued(later, 9), 0u) << "it fills from the first read on";
@@ -86,7 +86,8 @@ TEST(SensorSchedule, FreeRunningCountsWhatAQueueWouldHaveHad) {
   EXPECT_EQ(free.unqueued(later, 1), 0u) << "no queue";
   SensorSchedule synchronised = camera(milliseconds(10));
   synchronised.mark_read({1, ms(33), ms(43)});
-  EXPECT_EQ(synchronised.unqueued(later, 9), 0u);
+  EXPECT_EQ(synchronised.unqueued(later, 2), 2u) << "they had no place";
+  EXPECT_EQ(synchronised.unqueued(later, 1), 0u) << "no queue";
 }
 
 // Synchronised and in free running; measurement 1 (of 33 ms, available at 43 ms) has been read.

@@ -159,17 +159,17 @@ Status each_once(const std::vector<std::string_view>& sensors);
 /// One measurement of each sensor, all of one instant: for a stereo pair, or colour and depth.
 /// Reads those that are behind until all stamps are within `most_apart`: equal, or as a driver's
 /// synchroniser pairs them. Needs a queue of a few measurements (`set_queue`), so that what one
-/// sensor delivers earlier is not lost. Fails with kInvalid as `each_once`, and if after 1,000
-/// reads there was no common instant.
+/// sensor delivers earlier is not lost. Fails with kInvalid as `each_once`, and if after 50
+/// reads of each there was no common instant.
 template <class Sample>
 Result<std::vector<Sample>> read_together(Vehicle& vehicle,
                                           const std::vector<std::string_view>& sensors) {
-  constexpr int kMostReads = 1000;
+  const std::size_t most_reads = 50 * sensors.size();
   if (const Status once = each_once(sensors); !once) return once.failure();
   const Duration apart = most_apart(vehicle.catalogue(), sensors);
   std::vector<Sample> samples(sensors.size());
   std::vector<SimTime> stamps(sensors.size(), SimTime::min());  // which is: not read
-  for (int reads = 0; reads < kMostReads; ++reads) {
+  for (std::size_t reads = 0; reads < most_reads; ++reads) {
     const auto [earliest, latest] = std::ranges::minmax_element(stamps);
     if (*earliest != SimTime::min() && *latest - *earliest <= apart) return samples;
     const auto behind = static_cast<std::size_t>(earliest - stamps.begin());

@@ -165,7 +165,8 @@ struct SutReport {
   std::optional<link::Finish> finish;  ///< its own report; the outcome is printable
   ExecTime et;                         ///< its ET at the end of the run
   SutLooks looks{};  ///< under the barrier, unless its clock counts all waiting as it is
-  /// In free running: sensors from whose queue it read, and how many measurements did not wait.
+  /// Sensors from whose queues it read, and how many measurements had no place there. In free
+  /// running, none waits: how many would have waited.
   std::vector<std::pair<std::string, std::uint64_t>> unqueued{};
 };
 

@@ -110,6 +110,15 @@ struct Pace {
     std::string text() const;
   } losses{};
 
+  /// Of all programs: measurements that had no place in the queue of their sensor, because it was
+  /// read too seldom. A record does not have them: `pace_of` leaves this empty.
+  struct Unqueued {
+    std::string uav{}, sensor{};
+    std::uint64_t count = 0;
+    friend bool operator==(const Unqueued&, const Unqueued&) = default;
+  };
+  std::vector<Unqueued> unqueued{};
+
   Speed speed{};             ///< of all programs of the run
   std::string radio{};       ///< its settings, to compare them; empty: there is none
   std::size_t messages = 0;  ///< of all programs, once for each receiver
