@@ -1,4 +1,4 @@
-#include "mesh_file.h"
+#include "meshes/mesh_file.h"
 #include "picture.h"
 
 /// Assimp forgets what it has read so far of a file that it refuses.

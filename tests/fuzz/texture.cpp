@@ -1,6 +1,6 @@
+#include "meshes/texture_file.h"
+#include "meshes/triangle_mesh.h"
 #include "picture.h"
-#include "texture_file.h"
-#include "triangle_mesh.h"
 
 /// Textures of strangers, up to a picture of a wall with them. Input: a PNG or JPEG file.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
