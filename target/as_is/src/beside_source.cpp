@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <ctime>
 #include <optional>
 #include <utility>
 
@@ -21,10 +20,7 @@ class BesideSource final : public client::TimeSource {
   computer::Clock clock() const override { return source_->clock(); }
   Duration elapsed() const override { return last_ = source_->elapsed(); }
   Duration elapsed_at_resume() const override { return last_ = source_->elapsed_at_resume(); }
-  void hold() const override {
-    source_->hold();
-    is_held_ = true;
-  }
+  void hold() const override { is_held_ = true; }  // the source need not measure it, too
   Duration elapsed_in_children() const override {
     if (!is_held_) is_beside_ = Threads::are_several();
     const Duration own = source_->counted_of_thread();
@@ -52,15 +48,6 @@ class BesideSource final : public client::TimeSource {
 
 std::atomic<Duration> g_beside_calls{Duration(0)};
 
-Duration of_other_threads() {
-  const auto used = [](clockid_t clock) {
-    timespec time{};
-    ::clock_gettime(clock, &time);
-    return std::chrono::seconds(time.tv_sec) + Duration(time.tv_nsec);
-  };
-  return used(CLOCK_PROCESS_CPUTIME_ID) - used(CLOCK_THREAD_CPUTIME_ID);
-}
-
 // The same of a wall clock, for which nothing is charged: it is only known.
 class WatchedSource final : public client::TimeSource {
  public:
@@ -68,10 +55,11 @@ class WatchedSource final : public client::TimeSource {
 
   computer::Clock clock() const override { return source_->clock(); }
   Duration elapsed() const override { return source_->elapsed(); }
-  void hold() const override { at_hold_ = of_other_threads(); }
+  void hold() const override { at_hold_ = client::cpu_time_of_other_threads(); }
   Duration elapsed_at_resume() const override {
     if (const auto since = std::exchange(at_hold_, std::nullopt))
-      g_beside_calls = g_beside_calls.load() + std::max(Duration(0), of_other_threads() - *since);
+      g_beside_calls = g_beside_calls.load() +
+                       std::max(Duration(0), client::cpu_time_of_other_threads() - *since);
     return source_->elapsed_at_resume();
   }
 

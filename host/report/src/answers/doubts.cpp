@@ -72,7 +72,7 @@ std::string left_out_text(const ConditionVerdict& condition) {
 
 std::string doubts_text(const ConditionVerdict& condition) {
   std::string text;
-  if (!condition.varied.empty() && condition.flown > 1 && !condition.is_one_flight())
+  if (!condition.varied.empty() && !condition.is_one_flight())
     text += fmt::format(" The flights differ in {}.", joined_with_and(condition.varied));
   else if (condition.distinct > 1)
     text += " They all begin alike, and differ only in noise and measured times.";

@@ -41,10 +41,6 @@ class WallSource final : public TimeSource {
   Duration origin_ = read_clock(CLOCK_MONOTONIC);  // small numbers lose nothing when scaled
 };
 
-Duration of_other_threads() {
-  return read_clock(CLOCK_PROCESS_CPUTIME_ID) - read_clock(CLOCK_THREAD_CPUTIME_ID);
-}
-
 // Of the calling thread, by leave_out and for looking at children.
 thread_local Duration t_left_out __attribute__((tls_model("initial-exec"))){0};
 
@@ -112,7 +108,7 @@ Duration CpuSource::elapsed() const {
 Duration CpuSource::elapsed_at_resume() const {
   const std::lock_guard lock(mutex_);
   if (const auto since = std::exchange(others_at_hold_, std::nullopt))
-    beside_ += std::max(Duration(0), of_other_threads() - *since);
+    beside_ += std::max(Duration(0), cpu_time_of_other_threads() - *since);
   read_children();
   read_own();
   return scaled(newest_own_ + newest_children_, factor_);
@@ -120,7 +116,7 @@ Duration CpuSource::elapsed_at_resume() const {
 
 void CpuSource::hold() const {
   const std::lock_guard lock(mutex_);
-  if (__libc_single_threaded == 0) others_at_hold_ = of_other_threads();
+  if (__libc_single_threaded == 0) others_at_hold_ = cpu_time_of_other_threads();
 }
 
 Duration CpuSource::computed_beside() const {
@@ -206,6 +202,10 @@ class ReplayedSource final : public TimeSource {
 };
 
 }  // namespace
+
+Duration cpu_time_of_other_threads() {
+  return read_clock(CLOCK_PROCESS_CPUTIME_ID) - read_clock(CLOCK_THREAD_CPUTIME_ID);
+}
 
 std::unique_ptr<TimeSource> make_wall_source(double factor) {
   return std::make_unique<WallSource>(factor);

@@ -44,9 +44,9 @@ Failure protocol_failure(const std::string& what) {
   return {Failure::Kind::kProtocol, "protocol violation in the coordinator's reply: " + what};
 }
 
-// As much as makes an unseen wait doubtful.
-constexpr std::int64_t kLeastUncharged_ms = 100;
-constexpr std::int64_t kLeastShareUncharged = 100;  // one part in
+// As much as makes an unseen wait doubtful: that long, and one part in a hundred of its time.
+constexpr Duration kLeastUncharged = std::chrono::milliseconds(100);
+constexpr std::int64_t kLeastPartUncharged = 100;
 
 Failure mission_finished() {
   return {Failure::Kind::kInvalid, "the mission is finished; no more calls are possible"};
@@ -279,15 +279,14 @@ Status InteractingVehicle::commanded(Status status) {
 // A program may ignore both, and say that it has reached its goal.
 Status InteractingVehicle::finish(bool reached_goal, std::string_view outcome,
                                   std::string_view details_json) {
-  const auto uncharged_ms =
-      std::chrono::duration_cast<std::chrono::milliseconds>(computed_beside()).count();
-  const bool is_uncharged = uncharged_ms >= kLeastUncharged_ms &&
-                            computed_beside() * kLeastShareUncharged > now().time_since_epoch();
-  if (refused_commands_ > 0 || is_uncharged)
+  Duration uncharged = computed_beside();
+  if (uncharged < kLeastUncharged || uncharged * kLeastPartUncharged <= now().time_since_epoch())
+    uncharged = Duration(0);
+  if (refused_commands_ > 0 || uncharged > Duration(0))
     if (const Status noted = annotate(
-            uav::kClientReport,
-            "{\"refused_commands\": " + std::to_string(refused_commands_) +
-                ", \"uncharged_ms\": " + std::to_string(is_uncharged ? uncharged_ms : 0) + "}");
+            uav::kClientReport, "{\"refused_commands\": " + std::to_string(refused_commands_) +
+                                    ", \"uncharged_ms\": " +
+                                    std::to_string(uncharged / std::chrono::milliseconds(1)) + "}");
         !noted)
       return noted;
   Status done = status_of(

@@ -48,6 +48,9 @@ class TimeSource {
   virtual void release_calling_thread() {}
 };
 
+/// CPU time of this process without that of the calling thread.
+Duration cpu_time_of_other_threads();
+
 /// The machine's monotonic clock × factor. A factor other than 1 is a virtual target on which
 /// waiting counts as well as computing; for programs of several threads.
 /// @pre factor > 0
