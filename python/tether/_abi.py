@@ -12,7 +12,7 @@ from collections.abc import Callable
 from typing import Any, TypeVar
 
 from . import samples
-from .errors import ERRORS, Code, InternalError
+from .errors import ERRORS, Code, InternalError, InvalidError
 
 T = TypeVar("T")
 
@@ -178,7 +178,7 @@ def joints_of(handle: int | None) -> tuple[samples.Joint, ...]:
 
 
 def to_c(setpoint: samples.Setpoint, counts: dict[str, int] | None = None) -> CSetpoint:
-    """The struct of a set-point. Raises ValueError for a vector of another length; `counts`: of the UAV's lists."""
+    """The struct of a set-point. Raises InvalidError for a vector of another length; `counts`: of the UAV's lists."""
     c = CSetpoint(after_ns=to_ns(setpoint.after_s), in_heading=setpoint.in_heading)
     for field in dataclasses.fields(setpoint):
         value = getattr(setpoint, field.name)
@@ -189,13 +189,13 @@ def to_c(setpoint: samples.Setpoint, counts: dict[str, int] | None = None) -> CS
             most = len(getattr(c, field.name))
             needed = (counts or {}).get(field.name) or None
             if len(value) > most or (needed is not None and len(value) != needed):
-                raise ValueError(f"{field.name} has {len(value)} numbers; the UAV has "
-                                 f"{needed or f'at most {most}'} {COUNTS[field.name]}")
+                raise InvalidError(f"{field.name} has {len(value)} numbers; the UAV has "
+                                   f"{needed or f'at most {most}'} {COUNTS[field.name]}")
             setattr(c, COUNTS[field.name], len(value))
             getattr(c, field.name)[:len(value)] = [float(number) for number in value]
         elif isinstance(member := getattr(c, field.name), ctypes.Structure):
             if len(value) != len(member._fields_):
-                raise ValueError(f"{field.name} has {len(value)} numbers instead of {len(member._fields_)}")
+                raise InvalidError(f"{field.name} has {len(value)} numbers instead of {len(member._fields_)}")
             setattr(c, field.name, type(member)(*map(float, value)))
         else:
             setattr(c, field.name, float(value))
@@ -203,7 +203,7 @@ def to_c(setpoint: samples.Setpoint, counts: dict[str, int] | None = None) -> CS
 
 
 def to_ns(seconds: float) -> int:
-    """Whole nanoseconds of seconds. Raises ValueError for NaN, and beyond what 64 bits hold."""
+    """Whole nanoseconds of seconds. Raises InvalidError for NaN, and beyond what 64 bits hold."""
     if not abs(seconds) < 9.2e9:
-        raise ValueError(f"a time must be a number of seconds, but is {seconds}")
+        raise InvalidError(f"a time must be a number of seconds, but is {seconds}")
     return round(seconds * 1e9)

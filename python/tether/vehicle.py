@@ -194,9 +194,10 @@ class Sensor(Generic[T]):
     def set_queue(self, depth: int) -> None:
         """Lets up to `depth` measurements of a periodic sensor wait, 1 to 4096; reads then get the oldest.
 
+        The queue begins at the first read after it: what was measured before is not in it.
         In free running, only the newest waits; the result says how many had no place.
         """
-        if not 1 <= depth <= 4096:
+        if not isinstance(depth, int) or not 1 <= depth <= 4096:
             raise InvalidError(f"'{self.name}' cannot have a queue of {depth} measurements; use 1 to 4096")
         check(lib.tether_set_queue(self._vehicle._handle, self._name, depth))
         self._depth = depth
@@ -349,7 +350,7 @@ class Vehicle:
     def follow(self, setpoints: Sequence[Setpoint]) -> None:
         """Follows a trajectory of 1 to 1024 set-points, each until the time of the next one.
 
-        Raises ValueError for a list of another length than the UAV's, or a time that is none.
+        Raises InvalidError for a list of another length than the UAV's, or a time that is none.
         """
         counts = {"rotor_speeds_rad_s": self.flight_limits.rotors, "joints_rad": len(self.joints)}
         c = [to_c(setpoint, counts) for setpoint in setpoints]
@@ -419,8 +420,11 @@ def _anchor(pointer: int) -> Anchor:
 
 
 def _json(data: dict[str, Any]) -> bytes:
-    """One JSON object; numbers of NumPy are numbers. Raises ValueError for NaN, which JSON does not have."""
-    return json.dumps(data, allow_nan=False, default=lambda value: value.tolist()).encode()
+    """One JSON object; numbers of NumPy are numbers. Raises InvalidError for NaN, and for what JSON does not have."""
+    try:
+        return json.dumps(data, allow_nan=False, default=lambda value: value.tolist()).encode()
+    except (ValueError, AttributeError) as error:
+        raise InvalidError(f"the data cannot be written as JSON: {error}") from error
 
 
 def connect(*, address: str | None = None, token: str | None = None, uav: str | None = None,

@@ -60,11 +60,13 @@ struct CampaignOptions {
 
 constexpr int kTrialsOfScenario = 10;
 
-/// The campaign of the file, or that of a scenario.
+/// The campaign of the file, or that of a scenario. Of a name that both have, the options that only
+/// scenarios have decide.
 scenario::Campaign read(const CampaignOptions& options, const scenario::ShippedFiles& shipped) {
   using scenario::ShippedKind;
   const std::string given = options.campaign.string();
-  const bool is_scenario_name = !shipped.has(ShippedKind::kCampaign, given) &&
+  const bool is_of_scenario = !options.conditions.empty() || options.trials.has_value();
+  const bool is_scenario_name = (is_of_scenario || !shipped.has(ShippedKind::kCampaign, given)) &&
                                 shipped.has(ShippedKind::kScenario, given) &&
                                 !std::filesystem::exists(options.campaign);
   const std::filesystem::path file =

@@ -178,12 +178,16 @@ Vec3 drag_N(const MultirotorParameters& parameters, const MultirotorState& state
   return {across * v_W.x, across * v_W.y, airframe * v_W.z};
 }
 
+/// The most that is left of the thrust at the largest tilt [N].
+double max_upward_force_N(const MultirotorParameters& parameters) {
+  return kMaxThrustOfRotors * flight_limits(parameters).max_thrust_N *
+         std::cos(parameters.max_tilt_rad);
+}
+
 /// Force within what thrust and tilt allow.
 Vec3 limited_force(const MultirotorParameters& parameters, double gravity_m_s2, const Vec3& asked) {
-  const double max_thrust = kMaxThrustOfRotors * max_rotor_thrust_N(parameters) *
-                            static_cast<double>(parameters.rotors.size());
   const double min_up = kMinThrustOfWeight * parameters.mass_kg * gravity_m_s2;
-  const double max_up = std::max(min_up, max_thrust * std::cos(parameters.max_tilt_rad));
+  const double max_up = std::max(min_up, max_upward_force_N(parameters));
   const Vec3 force{asked.x, asked.y, std::clamp(asked.z, min_up, max_up)};
   return with_horizontal_limit(force, force.z * std::tan(parameters.max_tilt_rad));
 }
@@ -298,6 +302,12 @@ Wanted wanted_of_motion(const MultirotorParameters& parameters, double gravity_m
 }
 
 }  // namespace
+
+double max_unknown_load_kg(const MultirotorParameters& parameters, double gravity_m_s2) {
+  const double by_integral_N = kMaxVelocityIntegral_m_s2 * parameters.mass_kg;
+  const double by_thrust_N = max_upward_force_N(parameters) - parameters.mass_kg * gravity_m_s2;
+  return std::max(0.0, std::min(by_integral_N, by_thrust_N)) / gravity_m_s2;
+}
 
 void follow_motion(const BodyState& body, MultirotorState& state) {
   follow_velocity(body, state);

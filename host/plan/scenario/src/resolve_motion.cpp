@@ -49,14 +49,20 @@ sim::Uav& carrier_of(const CarriedPayload& carried, sim::World& world) {
 }
 
 /// With what it carries already when it picks this up.
-void require_lift(const CarriedPayload& carried, sim::World& world) {
+void require_lift(const CarriedPayload& carried, sim::World& world, const sim::WarningSink& warn) {
   const sim::Uav& uav = carrier_of(carried, world);
-  double mass_kg = uav.airframe.mass_kg;
+  double load_kg = 0.0;
   for (const sim::Payload& payload : uav.payloads)
     if (payload.from <= carried.payload.from && carried.payload.from < payload.until)
-      mass_kg += payload.mass_kg;
-  if (const std::string why = why_no_lift(uav, mass_kg, world); !why.empty())
-    fail(carried.at, "[[payload]]", why, "payload");
+      load_kg += payload.mass_kg;
+  const std::string why = why_no_lift(uav, uav.airframe.mass_kg + load_kg, world);
+  if (!why.empty()) fail(carried.at, "[[payload]]", why, "payload");
+  const double held_kg = max_unknown_load_kg(uav.airframe, world.gravity_m_s2);
+  if (warn && load_kg > held_kg)
+    warn({Consequence::kDoubtful, carried.at, "[[payload]]",
+          fmt::format("makes the UAV '{}' sink: it carries {:.3g} kg, and its controller, which "
+                      "does not know of them, holds the height with at most {:.3g} kg",
+                      uav.name, load_kg, held_kg)});
 }
 
 }  // namespace
@@ -87,7 +93,7 @@ Resolved resolve_world(const Scenario& scenario, const Condition& condition, std
   Resolved resolved;
   resolve_motion(scenario, is_read_elsewhere, world);
   resolved.varied = vary(scenario.variations, seed, is_read_elsewhere, world);
-  for (const CarriedPayload& carried : scenario.payloads) require_lift(carried, world);
+  for (const CarriedPayload& carried : scenario.payloads) require_lift(carried, world, warn);
   resolve_step(scenario, world);
   resolve_energy(scenario, condition, world, warn);
   resolved.timings = resolve_sensors(scenario, condition, world, warn);

@@ -182,7 +182,8 @@ void require_sensors_of_clauses(const UavSetup& setup, Sensors& sensors) {
 
 /// A sensor measures at the last step that is not after its instant.
 void check_rate(const LayeredSensor& sensor, const uav::SensorTiming& timing,
-                const std::string& uav, const sim::World& world, const sim::WarningSink& warn) {
+                const std::string& uav, const sim::World& world, Duration time_limit,
+                const sim::WarningSink& warn) {
   constexpr int kSteady = 10;  // periods of so many steps and more vary little
   const auto* periodic = std::get_if<uav::PeriodicTiming>(&timing);
   if (periodic == nullptr) return;
@@ -197,6 +198,11 @@ void check_rate(const LayeredSensor& sensor, const uav::SensorTiming& timing,
                             subject, problem, 1e3 * to_seconds(periodic->period),
                             1.0 / to_seconds(world.step)))
         .about(subject);
+  if (warn && periodic->phase >= time_limit)
+    warn({Consequence::kDoubtful, sensor.rate_at(), subject,
+          fmt::format("measures nothing: its first measurement is at {:.6g} s, and the flight ends "
+                      "at {:.6g} s",
+                      to_seconds(periodic->phase), to_seconds(time_limit))});
   if (periodic->period % world.step == Duration(0) || periodic->period >= kSteady * world.step)
     return;
   if (warn)
@@ -210,21 +216,22 @@ void check_rate(const LayeredSensor& sensor, const uav::SensorTiming& timing,
 void warn_of_losses(const sim::Sensor& sensor, const std::string& uav,
                     const sim::WarningSink& warn) {
   constexpr double kMany = 0.5;
-  const auto warn_of = [&](double probability, std::string_view key) {
+  const auto warn_of = [&](double probability, std::string_view key, std::string_view does) {
     if (warn && probability >= kMany)
       warn({Consequence::kDoubtful,
             {},
             fmt::format("sensor '{}' of UAV '{}'", sensor.name, uav),
-            fmt::format("loses {:.3g} % of its measurements ({} = {:.6g})", 100.0 * probability,
+            fmt::format("{} {:.3g} % of its measurements ({} = {:.6g})", does, 100.0 * probability,
                         key, probability)});
   };
   std::visit(
       [&](const auto& model) {
         if constexpr (requires { model.dropout_probability; })
-          warn_of(model.dropout_probability, "dropout_probability");
+          warn_of(model.dropout_probability, "dropout_probability", "loses");
       },
       sensor.model);
-  warn_of(sensor.driver.lost_probability, "lost_probability");
+  warn_of(sensor.driver.lost_probability, "lost_probability", "loses");
+  warn_of(sensor.driver.repeated_probability, "repeated_probability", "repeats");
 }
 
 const UavSetup& setup_of(const Scenario& scenario, const std::string& uav) {
@@ -249,7 +256,7 @@ std::vector<uav::SensorTiming> resolve(const Scenario& scenario, const Condition
   std::vector<uav::SensorTiming> timings;
   for (LayeredSensor& sensor : sensors) {
     timings.push_back(sensor.finish());
-    check_rate(sensor, timings.back(), uav.name, world, warn);
+    check_rate(sensor, timings.back(), uav.name, world, scenario.time_limit, warn);
     warn_of_losses(sensor.sensor(), uav.name, warn);
   }
   return timings;

@@ -106,6 +106,16 @@ void require_lift(const Variation& variation, sim::World& world) {
       fail(variation, why);
 }
 
+void require_wind(const Variation& variation, const uav::Wind& wind) {
+  if (wind.is_calm())
+    fail(variation,
+         "varies the wind, but there is none. Give the scenario a table [wind] whose velocity_m_s "
+         "is not zero");
+  if (variation.quantity == "turbulence_factor" && wind.turbulence == 0.0)
+    fail(variation,
+         "varies the turbulence, but there is none. Give the scenario's [wind] a 'turbulence'");
+}
+
 // --- places --------------------------------------------------------------------------------------
 
 /// All that is varied of one place at once: its coordinates are not independent of each other.
@@ -178,7 +188,7 @@ std::set<std::string> touching(const sim::World& world, const sim::Model& model)
       sim::World pair;
       sim::Uav as_uav;
       as_uav.body = link;
-      as_uav.X_WB = model.X_WM * link.X_ML;
+      as_uav.X_WB = start_of(model, link);
       pair.uavs.push_back(std::move(as_uav));
       add_other(pair);
       std::vector<uav::Pose> X_WB;
@@ -258,8 +268,7 @@ std::vector<Varied> vary(const std::vector<Variation>& variations, std::uint64_t
            fmt::format("varies {}, but this simulator reads the world's file itself. Use "
                        "the embedded simulator, or vary UAVs and sensors only",
                        variation.text()));
-    if (part == Part::kWind && world.wind.is_calm())
-      fail(variation, "varies the wind, but there is none. Give the scenario a table [wind]");
+    if (part == Part::kWind) require_wind(variation, world.wind);
     if (part == Part::kStart || part == Part::kModel) continue;
     values.push_back(value_of(variation, seed, 0));
     if (part == Part::kUav) change_uavs(variation, values.back().value, world);

@@ -68,8 +68,9 @@ TEST(ResolveMotion, LoadsTheNamedUavOrTheOnlyOne) {
   EXPECT_EQ(world.uavs[0].payloads.size(), 1u);
 }
 
-// 4 rotors of 5 N each lift 2 kg.
-TEST(ResolveWorld, RefusesPayloadsThatTheRotorsCannotLift) {
+// 4 rotors of 5 N each lift 2 kg; of what the controller does not know, it holds 0.2 kg, as much as
+// accelerates 1 kg by 2 m/s^2.
+TEST(ResolveWorld, RefusesPayloadsThatTheRotorsCannotLiftAndWarnsOfThoseThatSink) {
   sim::World world;
   world.uavs.resize(1);
   world.uavs[0].name = "alpha";
@@ -78,6 +79,7 @@ TEST(ResolveWorld, RefusesPayloadsThatTheRotorsCannotLift) {
   airframe.rotors.resize(4);
   airframe.thrust_coefficient = 5.0 / (100.0 * 100.0);
   airframe.max_rotor_speed_rad_s = 100.0;
+  std::vector<std::string> warnings;
   Scenario scenario;
   scenario.uavs.resize(1);
   scenario.uavs[0].placement.name = "alpha";
@@ -86,10 +88,16 @@ TEST(ResolveWorld, RefusesPayloadsThatTheRotorsCannotLift) {
     for (const sim::Payload& payload : payloads)
       scenario.payloads.push_back({.uav = "alpha", .payload = payload, .at = {"s.toml", 7}});
     sim::World flown = world;
-    resolve_world(scenario, {}, 1, false, flown, [](const Warning&) {});
+    resolve_world(scenario, {}, 1, false, flown,
+                  [&](const Warning& warning) { warnings.push_back(warning.message); });
   };
   const auto second = [](int s) { return SimTime(std::chrono::seconds(s)); };
+  EXPECT_NO_THROW(resolve({{0.2, second(0), second(2)}, {0.2, second(2), second(3)}}));
+  EXPECT_THAT(warnings, testing::Not(testing::Contains(HasSubstr("sink"))));
   EXPECT_NO_THROW(resolve({{0.6, second(0), second(2)}, {0.6, second(2), second(3)}}));
+  EXPECT_THAT(warnings, testing::Contains(HasSubstr("it carries 0.6 kg, and its controller, which "
+                                                    "does not know of them, holds the height with "
+                                                    "at most 0.204 kg")));
   const Error error = bad_file_error([&] {
     resolve({{0.6, second(0), second(2)}, {0.6, second(1), second(3)}});
   });

@@ -100,6 +100,15 @@ TEST_F(ResolveSensors, WarnsOfASensorThatLosesHalfOfItsMeasurements) {
                                                  HasSubstr("loses 100 % of its measurements"))));
 }
 
+TEST_F(ResolveSensors, WarnsOfASensorWhoseFirstMeasurementIsAfterTheFlight) {
+  scenario_.time_limit = std::chrono::seconds(20);
+  lay("late.toml",
+      "[sensors.range]\nkind = \"range\"\ntiming = \"periodic\"\nrate_hz = 10\n"
+      "phase_ms = 20000\n");
+  (void)resolve();
+  EXPECT_THAT(warnings_, testing::Contains(HasSubstr("its first measurement is at 20 s")));
+}
+
 TEST_F(ResolveSensors, TakesTheScenariosStepElseTheWorlds) {
   world_.step = milliseconds(4);
   world_.step_from = "world";

@@ -71,6 +71,8 @@ TEST(Vary, PathsAndWindVaryWhereThereAreAny) {
   }
   EXPECT_THROW(vary({of("path_time_factor", "pillar", OneOf{{0.001}})}, 1, false, moving), Error)
       << "1,500 m/s";
+  EXPECT_THROW(vary({of("turbulence_factor", "", OneOf{{2.0}})}, 1, false, moving), Error)
+      << "a steady wind";
 }
 
 TEST(Vary, EachDistributionHasItsMoments) {
@@ -138,7 +140,7 @@ TEST(Vary, AnAnchorMovesWithItsModel) {
 TEST(Vary, ADrivenPartTurnsAboutItsOwnOriginAfterItsModelMoved) {
   sim::World flown = world();
   sim::Model lid = box("crate::lid", {2.0, 0.3, 1.5}, {0.2, 0.2, 0.1}, false);
-  lid.path = sim::DrivenPath{{}, lid.X_WM.p};
+  lid.path = sim::DrivenPath{{{{}}}, lid.X_WM.p};
   flown.models.push_back(lid);
   vary({of("model_y_m", "crate", OneOf{{2.0}}), of("model_yaw_deg", "crate", OneOf{{90.0}})}, 1,
        false, flown);
@@ -187,6 +189,21 @@ TEST(Vary, UavsStartWhereTheyAreInNothingNew) {
   });
   EXPECT_THAT(error.what(), HasSubstr("finds no place for the UAV 'alpha'"));
   EXPECT_EQ(error.where().line, 7);
+}
+
+// The crate drives from where it stands in its file; at ST 0 it is 3 m before that.
+TEST(Vary, UavsStartBesideWhereADrivenModelBegins) {
+  const auto x_m = [](double low, double high) {
+    sim::World flown = world();
+    flown.models[1].is_static = false;
+    flown.models[1].path =
+        sim::DrivenPath{{{{Duration{0}, {-3.0, 0.0, 0.0}, 0.0}}}, flown.models[1].X_WM.p};
+    vary({of("start_x_m", "alpha", Uniform{low, high}), of("start_z_m", "alpha", OneOf{{-0.5}})}, 1,
+         false, flown);
+    return flown.uavs[0].X_WB.p.x;
+  };
+  EXPECT_GT(x_m(1.9, 2.1), 1.9);
+  EXPECT_THROW(x_m(-1.1, -0.9), Error);
 }
 
 TEST(Vary, LightAndFrictionAreThoseOfTheWholeWorld) {

@@ -77,6 +77,15 @@ std::string known_cause(const campaign::TrialResult& flight, const std::optional
   return limit_without_program(flight);
 }
 
+/// That a program waits in a loop, which counts as computing; empty: none does.
+std::string waiting_loop(const std::optional<Pace>& pace) {
+  if (!pace || pace->polling.clock_read_hz == 0.0) return "";
+  return fmt::format(
+      "the program of UAV '{}' reads its clock {:.2g} times a second: it probably waits in a loop, "
+      "which counts as computing, and which a faster computer does not shorten",
+      pace->polling.uav, pace->polling.clock_read_hz);
+}
+
 /// What can be the reason, if the program depends on it; empty: there is nothing. Whether a task
 /// runs, the program decides, and may do so by the time that is left.
 std::string possible_cause(const campaign::TrialResult& flight, const std::optional<Pace>& pace) {
@@ -97,6 +106,7 @@ std::string possible_cause(const campaign::TrialResult& flight, const std::optio
   for (const judge::ClauseVerdict& clause : flight.clauses)
     if (!clause.met && !clause.quantity.empty() && clause.quantiles.empty())
       return fmt::format("“{}” has nothing to judge: {}", clause.name, clause.limited_by);
+  if (std::string loop = waiting_loop(pace); !loop.empty()) return loop;
   if (pace && pace->losses.count > 0)
     return fmt::format("UAV '{}' {}", pace->losses.uav, pace->losses.text());
   if (pace && pace->messages > 0 && pace->messages_arrived == 0)
@@ -128,7 +138,7 @@ std::string unscaled_computing(const Compared& missed, const std::vector<Compare
   constexpr double kSameTimes = 1.25, kOtherSpeed = 2.0;
   for (const Compared& other : all) {
     const auto slowdown = slowdown_of(missed, other);
-    if (!slowdown || (*slowdown<kOtherSpeed&& * slowdown> 1.0 / kOtherSpeed)) continue;
+    if (!slowdown || std::max(*slowdown, 1.0 / *slowdown) <= kOtherSpeed) continue;
     const auto costs = costs_of(*missed.pace(), *other.pace());
     if (costs && costs->own_s <= kSameTimes * costs->other_s &&
         costs->other_s <= kSameTimes * costs->own_s)
@@ -248,7 +258,7 @@ MissReason reason_of(const Compared& missed, const std::vector<Compared>& all,
   const bool misses_faster = std::ranges::any_of(
       faster, [](const Compared* other) { return other->verdict->is_missed(); });
   if (const std::string limit = in_each(missed, limit_below_computing);
-      !limit.empty() && !misses_faster) {
+      !limit.empty() && !misses_faster && waiting_loop(missed.pace()).empty()) {
     const std::string unscaled = unscaled_computing(missed, all);
     return {unscaled.empty() ? Evidence::kMissesOwnPace : Evidence::kKnownCause, "",
             unscaled.empty() ? limit : unscaled};

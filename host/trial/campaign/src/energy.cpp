@@ -39,6 +39,11 @@ energy::Energies_J between(const record::Battery& from, const record::Battery& t
   return spent;
 }
 
+/// Whether a UAV whose battery gives nothing has lost its power.
+bool draws_always(const record::SutInfo& sut) {
+  return sut.energy && sut.energy->idle_W + sut.energy->sensors_W + sut.energy->lift_W > 0.0;
+}
+
 }  // namespace
 
 std::vector<UavEnergy> energy_of(const record::Record& record,
@@ -52,8 +57,11 @@ std::vector<UavEnergy> energy_of(const record::Record& record,
                      .charge_from = own.front()->charge,
                      .charge_to = own.back()->charge,
                      .least_voltage_V = own.front()->voltage_V};
-    for (const record::Battery* battery : own)
+    for (const record::Battery* battery : own) {
       energy.least_voltage_V = std::min(energy.least_voltage_V, battery->voltage_V);
+      energy.was_cut_off |=
+          draws_always(sut) && battery->current_A == 0.0 && battery->at > SimTime{};
+    }
     for (const judge::TaskSpan& task : tasks)
       if (task.uav == sut.uav)
         energy.tasks.push_back(

@@ -237,7 +237,10 @@ TrialResult make_result(const scenario::Scenario& scenario, const scenario::Cond
     for (std::size_t i = 0; i < result.pace->speed.programs.size(); ++i)
       if (const auto& target = computer_of(condition, i).target)
         result.pace->speed.programs[i].cores = target->cores;
-  if (result.pace) check_losses(result, result.pace->losses);
+  if (result.pace) {
+    check_losses(result, result.pace->losses);
+    result.pace->polling = polling_of(record);
+  }
   result.flight_digest = flight_digest(record);
   result.versions = {{"tether", record.header.tether_version},
                      {"simulator", record.header.simulator}};

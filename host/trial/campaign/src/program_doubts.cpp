@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <map>
 #include <numeric>
@@ -134,13 +135,21 @@ Motion motion_of(const record::Record& record, const std::string& uav) {
   return motion;
 }
 
+/// Each report of the client library, with the UAV of its program.
+void for_each_report(const record::Record& record,
+                     const std::function<void(const std::string&, const nlohmann::json&)>& take) {
+  for (const auto& logged : record.annotations) {
+    if (logged.message.topic != uav::kClientReport) continue;
+    const auto told = nlohmann::json::parse(logged.message.json, nullptr, false);
+    if (told.is_object()) take(logged.message.uav, told);
+  }
+}
+
 /// Of a program that says that it reached its goal: what became of the commands of its own.
 void check_commands(const record::Record& record, const Motion& motion, const std::string& uav,
                     std::vector<Warning>& warnings) {
-  for (const auto& logged : record.annotations) {
-    if (logged.message.uav != uav || logged.message.topic != uav::kClientReport) continue;
-    const auto told = nlohmann::json::parse(logged.message.json, nullptr, false);
-    if (!told.is_object()) continue;
+  for_each_report(record, [&](const std::string& of, const nlohmann::json& told) {
+    if (of != uav) return;
     if (const std::size_t refused = told.value("refused_commands", 0U); refused > 0)
       warnings.push_back(doubt_about(
           uav, fmt::format("was not given {} of its program, which Tether's library refused",
@@ -151,7 +160,7 @@ void check_commands(const record::Record& record, const Motion& motion, const st
           fmt::format("has a program whose other threads computed {:.3g} s during calls, which the "
                       "clock \"cpu\" does not charge",
                       uncharged_ms * 1e-3)));
-  }
+  });
   const auto is_own = [&](const auto& logged) { return logged.message.uav == uav; };
   const auto moves = [&](const auto& logged) {
     const record::CommandEffect& m = logged.message;
@@ -283,6 +292,15 @@ std::string check_program(const record::Record& record, const record::SutInfo& i
   if (!sut.finished) return "";
   return fmt::format("the program of UAV '{}' ended before it did anything with it{}{}", sut.uav,
                      sut.outcome.empty() ? "" : ": ", sut.outcome);
+}
+
+timing::Pace::Polling polling_of(const record::Record& record) {
+  timing::Pace::Polling most;
+  for_each_report(record, [&](const std::string& uav, const nlohmann::json& told) {
+    if (const double hz = told.value("clock_read_hz", 0.0); hz > most.clock_read_hz)
+      most = {uav, hz};
+  });
+  return most;
 }
 
 std::string where_to_find(const record::Record& record) {

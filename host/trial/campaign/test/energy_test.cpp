@@ -46,6 +46,16 @@ TEST(Energy, IsOfTheWholeFlightAndOfEachTask) {
   EXPECT_DOUBLE_EQ(total_J(energy[0].tasks[0].spent_J), 315.0);
 }
 
+// What is drawn all the time is drawn no more.
+TEST(Energy, IsCutOffWithChargeLeft) {
+  record::Record record = flight();
+  record.header.suts[0].energy.emplace().idle_W = 5.0;
+  for (auto& battery : record.batteries) battery.message.current_A = 8.0;
+  EXPECT_FALSE(energy_of(record, {})[0].is_empty());
+  record.batteries.back().message.current_A = 0.0;
+  EXPECT_TRUE(energy_of(record, {})[0].is_empty());
+}
+
 TEST(Energy, EndsWhenTheSutFinishes) {
   record::Record record = flight();
   record::Interaction finish;

@@ -262,6 +262,14 @@ TEST_F(MakeResult, CommandsThatHadNoEffectAreDoubtful) {
   EXPECT_EQ(doubts({{"uav1", false, "late", {}}}), "") << "a slow computer can be why";
 }
 
+TEST_F(MakeResult, TellsWhichProgramWaitedInALoop) {
+  record::Record record = finished_record();
+  record.header.policy = record::kConservativeBarrier;
+  record.annotations.push_back(
+      {{}, 0, {"uav1", {}, uav::kClientReport, R"({"clock_read_hz": 4e5})"}});
+  EXPECT_EQ(make(record, kReached).pace->polling, (timing::Pace::Polling{"uav1", 4e5}));
+}
+
 TEST_F(MakeResult, TakesEverythingFromTheRecord) {
   const TrialResult result = make(finished_record(), kReached);
   EXPECT_EQ(result.outcome, Outcome::kGoalReached);

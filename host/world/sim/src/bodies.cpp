@@ -8,10 +8,15 @@ std::vector<MovingBody> moving_bodies(const World& world) {
   for (const Model& model : world.models) {
     if (model.is_static) continue;
     for (const Link& link : model.links) {
-      bodies.push_back({&link, nullptr, &model, model.X_WM * link.X_ML});
+      bodies.push_back({&link, nullptr, &model, start_of(model, link)});
     }
   }
   return bodies;
+}
+
+uav::Pose start_of(const Model& model, const Link& link) {
+  const MovingBody body{&link, nullptr, &model, model.X_WM * link.X_ML};
+  return model.path ? driven_state(body, SimTime{}).X_WB : body.X_WB;
 }
 
 std::vector<TurnedPart> turned_parts(const World& world) {

@@ -48,5 +48,12 @@ TEST(BodiesTest, UavsAndLinksOfDynamicModelsMoveAndThoseOfStaticModelsDoNot) {
   }
 }
 
+TEST(BodiesTest, ADrivenModelStartsWhereItsPathBegins) {
+  World world = mixed_world();
+  world.models[1].path =
+      DrivenPath{{{{Duration{0}, {0.0, 2.0, 0.0}, 0.0}}}, world.models[1].X_WM.p};
+  EXPECT_EQ(moving_bodies(world)[3].X_WB.p, (uav::Vec3{6.0, 2.0, 1.0}));
+}
+
 }  // namespace
 }  // namespace tether::sim

@@ -178,6 +178,7 @@ void ConcurrentVehicle::close() {
 
 // In free running, a reply can show that ST is behind what the page said.
 ExecTime ConcurrentVehicle::now() const {
+  count_clock_read();
   const ExecTime now = clock_.page->now();
   if (!free_running_) return now;
   ExecTime latest = latest_.load();

@@ -282,11 +282,16 @@ Status InteractingVehicle::finish(bool reached_goal, std::string_view outcome,
   Duration uncharged = computed_beside();
   if (uncharged < kLeastUncharged || uncharged * kLeastPartUncharged <= now().time_since_epoch())
     uncharged = Duration(0);
-  if (refused_commands_ > 0 || uncharged > Duration(0))
+  const double clock_read_hz =
+      static_cast<double>(clock_reads_) / std::max(1.0, to_seconds(now().time_since_epoch()));
+  const bool polls = clock_read_hz > uav::kPollingClock_hz;
+  if (refused_commands_ > 0 || uncharged > Duration(0) || polls)
     if (const Status noted = annotate(
-            uav::kClientReport, "{\"refused_commands\": " + std::to_string(refused_commands_) +
-                                    ", \"uncharged_ms\": " +
-                                    std::to_string(uncharged / std::chrono::milliseconds(1)) + "}");
+            uav::kClientReport,
+            "{\"refused_commands\": " + std::to_string(refused_commands_) +
+                ", \"uncharged_ms\": " + std::to_string(uncharged / std::chrono::milliseconds(1)) +
+                ", \"clock_read_hz\": " + std::to_string(polls ? std::lround(clock_read_hz) : 0) +
+                "}");
         !noted)
       return noted;
   Status done = status_of(

@@ -69,6 +69,8 @@ class InteractingVehicle : public Vehicle {
   virtual Result<link::Reply> interact(Body body) = 0;
   /// As TimeSource has it.
   virtual Duration computed_beside() const { return Duration::zero(); }
+  /// Each call of now() counts: a program that waits in a loop makes very many.
+  void count_clock_read() const { clock_reads_.fetch_add(1, std::memory_order_relaxed); }
   /// The mission is finished: lets go of the coordinator.
   virtual void close() = 0;
 
@@ -93,6 +95,7 @@ class InteractingVehicle : public Vehicle {
   std::vector<std::string> peers_;
   std::vector<std::atomic<std::uint32_t>> queues_;  // of each sensor
   std::atomic<std::uint64_t> refused_commands_ = 0;
+  mutable std::atomic<std::uint64_t> clock_reads_ = 0;
   pid_t process_ = ::getpid();
   mutable std::mutex mutex_;
   std::optional<Failure> over_;  // guarded by mutex_

@@ -30,7 +30,10 @@ class SimulatedVehicle final : public InteractingVehicle {
                    Duration progress_period);
   ~SimulatedVehicle() override;
 
-  ExecTime now() const override { return clock_->now(); }
+  ExecTime now() const override {
+    count_clock_read();
+    return clock_->now();
+  }
   Status sleep_for(Duration duration) override;
   Status sleep_until(ExecTime until) override;
   Status annotate(std::string_view topic, std::string_view json) override;

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <pthread.h>
 
@@ -286,7 +287,17 @@ TEST_F(SimulatedVehicleTest, SaysAtItsEndHowManyCommandsItRefused) {
   ASSERT_EQ(heard.size(), 2u);
   const auto& annotation = std::get<link::Annotation>(heard[0]);
   EXPECT_EQ(annotation.topic, uav::kClientReport);
-  EXPECT_EQ(annotation.json, R"({"refused_commands": 3, "uncharged_ms": 0})");
+  EXPECT_EQ(annotation.json, R"({"refused_commands": 3, "uncharged_ms": 0, "clock_read_hz": 0})");
+}
+
+TEST_F(SimulatedVehicleTest, SaysAtItsEndThatItWaitedInALoop) {
+  start();
+  for (int i = 0; i < 50'000; ++i) (void)vehicle_->now();
+  source_.advance(2s);
+  ASSERT_TRUE(vehicle_->finish(true, "done", "").ok());
+  const auto heard = coordinator_->heard();
+  EXPECT_THAT(std::get<link::Annotation>(heard.at(0)).json,
+              testing::HasSubstr(R"("clock_read_hz": 2500)"));
 }
 
 TEST_F(SimulatedVehicleTest, ReportsTheLastRoundTrip) {

@@ -93,6 +93,9 @@ using RotorSpeeds = std::array<double, MultirotorState::kMaxRotors>;   // [rad/s
 double max_rotor_thrust_N(const MultirotorParameters& parameters);
 /// Of all rotors together at full speed.
 FlightLimits flight_limits(const MultirotorParameters& parameters);
+/// What the controller can hold up that it does not know of [kg]: with more, a UAV that holds its
+/// height sinks.
+double max_unknown_load_kg(const MultirotorParameters& parameters, double gravity_m_s2);
 
 /// Divides a demand among the rotors of a layout.
 class Mixer {

@@ -39,7 +39,9 @@ CarriedPayload read_payload(const toml::Table& table, Duration time_limit) {
   if (table.has("from_s")) carried.payload.from = SimTime(table.duration("from_s", kAt_s));
   if (table.has("until_s")) carried.payload.until = SimTime(table.duration("until_s", kAt_s));
   if (carried.payload.until <= carried.payload.from)
-    table.fail("until_s", "must be later than 'from_s', which is 0 by default.");
+    table.fail("until_s", fmt::format("must be later than 'from_s', which is {:g}{}.",
+                                      to_seconds(carried.payload.from),
+                                      table.has("from_s") ? "" : " by default"));
   if (carried.payload.from >= SimTime(time_limit))
     table.fail("from_s", fmt::format("is {:.6g}, but the flight ends at 'time_limit_s' = {:.6g}.",
                                      to_seconds(carried.payload.from), to_seconds(time_limit)));

@@ -142,7 +142,8 @@ struct UavEnergy {
 
   /// How many more such flights the charge that is left is enough for; none if none was used.
   std::optional<double> more_flights() const;
-  bool is_empty() const { return charge_to <= 0.0; }
+  bool was_cut_off = false;  ///< its voltage fell too low, or it was asked for more than it has
+  bool is_empty() const { return charge_to <= 0.0 || was_cut_off; }
   friend bool operator==(const UavEnergy&, const UavEnergy&) = default;
 };
 double total_J(const energy::Energies_J& spent_J);

@@ -20,6 +20,8 @@ struct MovingBody {
 
 /// The UAVs in order, then the links of the dynamic models in order. Refers into `world`.
 std::vector<MovingBody> moving_bodies(const World& world);
+/// X_WB of a link at ST 0: a path may begin elsewhere than the model stands in its file.
+uav::Pose start_of(const Model& model, const Link& link);
 
 /// A part of a UAV behind `joints` of its joints. It is drawn as a body of its own.
 struct TurnedPart {

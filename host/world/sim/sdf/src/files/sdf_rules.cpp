@@ -64,6 +64,11 @@ const ValueRule kPose{is_coordinate, "it must be within 100000 m of its frame's 
                       "metres and radians", 3};
 const ValueRule kLatitude{[](double v) { return std::abs(v) <= 90.0; },
                           "it must be between -90 and 90", "degrees"};
+const ValueRule kLongitude{[](double v) { return std::abs(v) <= 360.0; },
+                           "it must be between -360 and 360", "degrees"};
+/// Where the standard atmosphere of the barometer holds, a flight's height included.
+const ValueRule kElevation{[](double v) { return v >= -1000.0 && v <= 10000.0; },
+                           "it must be between -1000 and 10000 m", "metres"};
 const ValueRule kPosition{is_coordinate, "it must be within 100000 m of its frame's origin",
                           "metres"};
 
@@ -123,7 +128,9 @@ const std::map<std::string, ValueRule, std::less<>> kRules = {
     {"range/max", kLength},
     {"range/resolution", kDistance},
     {"spherical_coordinates/latitude_deg", kLatitude},
-    {"air_pressure/reference_altitude", kPosition},
+    {"spherical_coordinates/longitude_deg", kLongitude},
+    {"spherical_coordinates/elevation", kElevation},
+    {"air_pressure/reference_altitude", kElevation},
     {"rotor/position_m", kPosition},
     {"horizontal/samples", kPositive},
     {"vertical/samples", kPositive},

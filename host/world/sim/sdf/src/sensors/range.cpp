@@ -47,6 +47,11 @@ bool read_range(const SensorReading& reading) {
     refuse(reading.source, lidar->Element()->FindElement("range"),
            "has a minimum that is not below its maximum");
   }
+  if (lidar->HorizontalScanMinAngle() > lidar->HorizontalScanMaxAngle() ||
+      lidar->VerticalScanMinAngle() > lidar->VerticalScanMaxAngle()) {
+    refuse(reading.source, lidar->Element()->FindElement("scan"),
+           "has a min_angle that is above its max_angle");
+  }
   if (lidar->HorizontalScanSamples() <= 1 && lidar->VerticalScanSamples() <= 1) {
     read_single_ray(reading, *lidar);
   } else {

@@ -143,6 +143,11 @@ TEST_F(SdfSensor, ASingleRayTurnsTheSensor) {
   EXPECT_NEAR(elevation, -0.2, 1e-9);
 }
 
+TEST_F(SdfSensor, AScanEndsAfterItsBeginning) {
+  EXPECT_THAT(refusal(request(with_scan(axis(9, "2.5", "-2.0"), axis(1, "0", "0")))).what(),
+              HasSubstr("min_angle that is above"));
+}
+
 TEST_F(SdfSensor, SeveralRaysAreAScan) {
   const std::string model = with_scan(axis(1080, "-2.0", "2.5"), axis(16, "-0.1", "0.3"));
   EXPECT_THAT(warnings(model), IsEmpty());
