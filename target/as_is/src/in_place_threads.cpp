@@ -64,8 +64,8 @@ int wait_until(Agent& agent, clockid_t clock, const timespec* until, Take take,
   int result = ETIMEDOUT;
   std::atomic<bool> is_interrupted = false;
   const auto interrupt = [&, thread = ::pthread_self()] {
-    if (condition != nullptr) return static_cast<void>(::pthread_cond_broadcast(condition));
     is_interrupted = true;
+    if (condition != nullptr) return static_cast<void>(::pthread_cond_broadcast(condition));
     interrupt_thread(thread);
   };
   const unsigned handled = Signals::count();
@@ -78,7 +78,10 @@ int wait_until(Agent& agent, clockid_t clock, const timespec* until, Take take,
     TETHER_REAL(clock_gettime)(CLOCK_REALTIME, &real);
     const timespec end = to_timespec(duration_of(real).value_or(Duration(0)) + slice);
     result = take(&end);
-    if (result == EINTR && is_interrupted.exchange(false)) result = ETIMEDOUT;
+    // Python asks for its lock only if the wait for it timed out. Who was woken by the program at
+    // the same instant may go on: the others that wait for the condition were woken, too.
+    const bool can_be_interrupt = result == EINTR || (result == 0 && condition != nullptr);
+    if (can_be_interrupt && is_interrupted.exchange(false)) result = ETIMEDOUT;
     return result != ETIMEDOUT || is_ended();
   };
   const Inside inside;

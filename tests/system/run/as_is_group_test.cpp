@@ -174,6 +174,21 @@ TEST_F(AsIsGroup, EveryWayToWaitTakesItsTime) {
   EXPECT_EQ(ways, 36);
 }
 
+// Python hands its lock over only to a thread whose wait for it timed out.
+TEST_F(AsIsGroup, ThreadsOfPythonTakeTurnsBesideOneThatComputes) {
+  write_text(folder_ / "turns.py",
+             "import threading, time\n"
+             "def compute():\n"
+             "    while True: pass\n"
+             "threading.Thread(target=compute, daemon=True).start()\n"
+             "begin = time.monotonic()\n"
+             "for i in range(20): time.sleep(0.001)\n"
+             "print(time.monotonic() - begin, flush=True)\n");
+  const Output output = fly("python3 " + (folder_ / "turns.py").string() + "\nexit 0\n");
+  expect_exit_0(output);
+  EXPECT_LT(std::stod(said()), 0.5) << "20 sleeps of 1 ms, and 20 turns of 5 ms";
+}
+
 // With the wall clock, all processes are stopped while the simulation catches up, here for more
 // than half of the time, and at each message that one of them sends or gets. None of them sees it.
 TEST_F(AsIsGroup, ProgramsThatAreStoppedSeeNoGap) {
