@@ -15,13 +15,13 @@ namespace {
 
 /// One for each campaign::Doubt::Kind: of a UAV or a machine.
 constexpr std::array kDoubts = {
-    "the program of {subject} waited up to about {amount:.2g} s on something that Tether does not "
+    "the program of {subject} waited up to about {seconds} s on something that Tether does not "
     "see",
     "threads of the program of {subject} computed in parallel ({amount:.1f} × the wall time), but "
     "their times are added",
-    "the program of {subject} waited {amount:.2g} s for the disk, or for a process that it started "
+    "the program of {subject} waited {seconds} s for the disk, or for a process that it started "
     "by vfork, which its clock does not count",
-    "the program of {subject} waited {amount:.2g} s, which the clock's factor stretches although "
+    "the program of {subject} waited {seconds} s, which the clock's factor stretches although "
     "no computer changes it",
     "the program of {subject} waited {percent:.1f} % of its time on something that Tether does not "
     "see",
@@ -59,9 +59,12 @@ std::string doubt_text(const FlightsInDoubt& doubt, const ConditionVerdict& cond
                                ? ""
                                : fmt::format("when “{}” was recorded, ", largest.recorded_in);
   return when +
-         fmt::format(fmt::runtime(kDoubts[static_cast<std::size_t>(largest.kind)]),
-                     fmt::arg("subject", subject), fmt::arg("amount", largest.amount),
-                     fmt::arg("percent", 100.0 * largest.amount)) +
+         fmt::format(
+             fmt::runtime(kDoubts[static_cast<std::size_t>(largest.kind)]),
+             fmt::arg("subject", subject), fmt::arg("amount", largest.amount),
+             fmt::arg("seconds", largest.amount < 100.0 ? fmt::format("{:.2g}", largest.amount)
+                                                        : fmt::format("{:.0f}", largest.amount)),
+             fmt::arg("percent", 100.0 * largest.amount)) +
          where;
 }
 

@@ -69,21 +69,17 @@ std::string known_cause(const campaign::TrialResult& flight, const std::optional
     if (energy.is_empty() && energy.charge_from < kEmpty)
       return fmt::format("the battery of {} is at {:.2g} % at the start", energy.uav,
                          100.0 * energy.charge_from);
+    else if (energy.cut_off_at <= kBeforeAnyProgram)
+      return fmt::format(
+          "the battery of {} gives no power from ST {:.3f} s on, before a program can act: its "
+          "voltage is too low, or it is asked for more than it has",
+          energy.uav, to_seconds(energy.cut_off_at));
   for (const judge::ClauseVerdict& clause : flight.clauses)
     if (!clause.met && clause.margin && clause.decided_at && !clause.least_without_computing &&
         *clause.decided_at <= kBeforeAnyProgram)
       return fmt::format("“{}” is missed at ST {:.3f} s, before a program can act", clause.name,
                          to_seconds(*clause.decided_at));
   return limit_without_program(flight);
-}
-
-/// That a program waits in a loop, which counts as computing; empty: none does.
-std::string waiting_loop(const std::optional<Pace>& pace) {
-  if (!pace || pace->polling.clock_read_hz == 0.0) return "";
-  return fmt::format(
-      "the program of UAV '{}' reads its clock {:.2g} times a second: it probably waits in a loop, "
-      "which counts as computing, and which a faster computer does not shorten",
-      pace->polling.uav, pace->polling.clock_read_hz);
 }
 
 /// What can be the reason, if the program depends on it; empty: there is nothing. Whether a task
@@ -106,7 +102,7 @@ std::string possible_cause(const campaign::TrialResult& flight, const std::optio
   for (const judge::ClauseVerdict& clause : flight.clauses)
     if (!clause.met && !clause.quantity.empty() && clause.quantiles.empty())
       return fmt::format("“{}” has nothing to judge: {}", clause.name, clause.limited_by);
-  if (std::string loop = waiting_loop(pace); !loop.empty()) return loop;
+  if (pace && !pace->unclear.empty()) return pace->unclear;
   if (pace && pace->losses.count > 0)
     return fmt::format("UAV '{}' {}", pace->losses.uav, pace->losses.text());
   if (pace && pace->messages > 0 && pace->messages_arrived == 0)
@@ -258,7 +254,7 @@ MissReason reason_of(const Compared& missed, const std::vector<Compared>& all,
   const bool misses_faster = std::ranges::any_of(
       faster, [](const Compared* other) { return other->verdict->is_missed(); });
   if (const std::string limit = in_each(missed, limit_below_computing);
-      !limit.empty() && !misses_faster && waiting_loop(missed.pace()).empty()) {
+      !limit.empty() && !misses_faster && missed.pace()->unclear.empty()) {
     const std::string unscaled = unscaled_computing(missed, all);
     return {unscaled.empty() ? Evidence::kMissesOwnPace : Evidence::kKnownCause, "",
             unscaled.empty() ? limit : unscaled};
@@ -266,8 +262,15 @@ MissReason reason_of(const Compared& missed, const std::vector<Compared>& all,
   const bool some_speed_suffices = std::ranges::any_of(all, [&](const Compared& other) {
     return differ_in_speed_only(other, missed) && is_sufficient(other.verdict->ruling);
   });
+  // What both may have missed it for, and no speed changes, comes before how near each came.
+  const std::string cause = in_each(missed, possible_cause);
+  const bool is_cause_of_all =
+      !cause.empty() && std::ranges::all_of(faster, [](const Compared* other) {
+        return !in_each(*other, possible_cause).empty();
+      });
   for (const Compared* other : faster) {
     if (some_speed_suffices || !other->verdict->is_missed()) continue;
+    if (is_cause_of_all && !is_instant(*other)) return {Evidence::kPossibleCause, "", cause};
     if (const std::string limit = met_by(*other->verdict, *missed.verdict); !limit.empty())
       return compared(Evidence::kFasterUndecided, *other, missed,
                       "misses it, too, but meets " + limit);
@@ -281,8 +284,7 @@ MissReason reason_of(const Compared& missed, const std::vector<Compared>& all,
   if (!faster.empty())
     return compared(Evidence::kFasterUndecided, *faster.front(), missed,
                     comparison_text(*faster.front(), missed));
-  if (const std::string cause = in_each(missed, possible_cause); !cause.empty())
-    return {Evidence::kPossibleCause, "", cause};
+  if (!cause.empty()) return {Evidence::kPossibleCause, "", cause};
   for (const Compared& other : all)
     if (is_evidence(*other.verdict) && reaches_instead(other))
       if (const std::string why = why_not_compared(other, missed); !why.empty())

@@ -61,9 +61,10 @@ MissedLimits missed_in(const campaign::TrialResult& trial) {
   if (!has_ended_it || missed.empty()) add_clauses(false);
   for (const campaign::MetricValue& metric : trial.metrics)
     if (metric.value && !metric.is_met()) add(limited(metric));
-  if (!missed.empty()) return missed;
+  // Of one that did not end, something else says how the flight ended.
+  const bool is_all = missed.empty();
   for (const campaign::SutResult& sut : trial.suts)
-    if (!sut.reached_goal)
+    if (!sut.reached_goal && (sut.finished || is_all))
       add(trial.suts.size() > 1 ? fmt::format("the own goal of {}'s program", sut.uav)
                                 : "the program's own goal",
           sut.outcome);

@@ -333,7 +333,8 @@ std::string_view name(Ruling ruling) {
 std::string name(const ConditionVerdict& condition) {
   const std::string of_one(lead_of_one_flight(condition));
   return (is_in_doubt(condition) ? "doubtful whether " : "") +
-         (of_one.empty() ? std::string(name(condition.ruling)) : in_a_sentence(of_one));
+         (of_one.empty() ? std::string(name(condition.ruling)) : in_a_sentence(of_one)) +
+         left_out_in_lead(condition);
 }
 
 std::string missed_text(const MissedLimits& missed, bool of_one) {

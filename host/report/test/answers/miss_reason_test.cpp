@@ -196,10 +196,10 @@ TEST_F(MissReasons, AreSpeedIfComputingAloneTakesLongerThanALimit) {
               testing::AllOf(StartsWith("Not fast enough in this flight: "),
                              HasSubstr("From an image to its command, computing takes 200 ms, "
                                        "longer than “quick” allows.")));
-  paces_[board]->polling = {"uav1", 4e5};
+  paces_[board]->unclear = "it probably waits in a loop";
   EXPECT_EQ(ruling(board), Ruling::kGoalMissed);
   EXPECT_THAT(verdict_text({verdict()}, Markup::kPlain), HasSubstr("probably waits in a loop"));
-  paces_[board]->polling = {};
+  paces_[board]->unclear.clear();
   trials(board)[0].clauses[0].limit = 9.0;
   EXPECT_EQ(ruling(board), Ruling::kOtherReason) << "sensors alone take 10 ms";
   trials(board)[0].clauses[0].limit = 205.0;

@@ -59,8 +59,8 @@ std::vector<UavEnergy> energy_of(const record::Record& record,
                      .least_voltage_V = own.front()->voltage_V};
     for (const record::Battery* battery : own) {
       energy.least_voltage_V = std::min(energy.least_voltage_V, battery->voltage_V);
-      energy.was_cut_off |=
-          draws_always(sut) && battery->current_A == 0.0 && battery->at > SimTime{};
+      if (draws_always(sut) && battery->current_A == 0.0 && battery->at > SimTime{})
+        energy.cut_off_at = std::min(energy.cut_off_at, battery->at);
     }
     for (const judge::TaskSpan& task : tasks)
       if (task.uav == sut.uav)

@@ -239,7 +239,7 @@ TrialResult make_result(const scenario::Scenario& scenario, const scenario::Cond
         result.pace->speed.programs[i].cores = target->cores;
   if (result.pace) {
     check_losses(result, result.pace->losses);
-    result.pace->polling = polling_of(record);
+    result.pace->unclear = unclear_times(record);
   }
   result.flight_digest = flight_digest(record);
   result.versions = {{"tether", record.header.tether_version},

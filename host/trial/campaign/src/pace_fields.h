@@ -98,11 +98,6 @@ void fields(auto& io, Maybe<timing::Pace::Unqueued> auto& m) {
   io("count", m.count);
 }
 
-void fields(auto& io, Maybe<timing::Pace::Polling> auto& m) {
-  io("uav", m.uav);
-  io("clock_read_hz", m.clock_read_hz);
-}
-
 /// Without the seed, which the result has.
 void fields(auto& io, Maybe<timing::Pace> auto& m) {
   io("uav", m.uav);
@@ -124,7 +119,7 @@ void fields(auto& io, Maybe<timing::Pace> auto& m) {
   }
   if (io.has("losses", m.losses.count > 0)) io("losses", m.losses);
   io.some("unqueued", m.unqueued);
-  if (io.has("polling", m.polling.clock_read_hz > 0.0)) io("polling", m.polling);
+  if (io.has("unclear", !m.unclear.empty())) io("unclear", m.unclear);
   io("shares_real_board", m.shares_real_board);
   if (io.has("shared_board", !m.shared_board.empty())) {
     io("shared_board", m.shared_board);

@@ -294,13 +294,22 @@ std::string check_program(const record::Record& record, const record::SutInfo& i
                      sut.outcome.empty() ? "" : ": ", sut.outcome);
 }
 
-timing::Pace::Polling polling_of(const record::Record& record) {
-  timing::Pace::Polling most;
+std::string unclear_times(const record::Record& record) {
+  std::string why;
   for_each_report(record, [&](const std::string& uav, const nlohmann::json& told) {
-    if (const double hz = told.value("clock_read_hz", 0.0); hz > most.clock_read_hz)
-      most = {uav, hz};
+    if (const double hz = told.value("clock_read_hz", 0.0); hz > 0.0)
+      why = fmt::format(
+          "the program of UAV '{}' reads its clock every {:.2g} µs: it probably waits in a loop, "
+          "which counts as computing, and which a faster computer does not shorten",
+          uav, 1e6 / hz);
+    else if (const double others_ms = told.value("others_ms", 0.0); others_ms > 0.0)
+      why = fmt::format(
+          "of what the program of UAV '{}' is charged, {:.3g} s are of threads other than the one "
+          "that calls Tether: if that one only waits meanwhile, a faster computer does not shorten "
+          "it",
+          uav, others_ms * 1e-3);
   });
-  return most;
+  return why;
 }
 
 std::string where_to_find(const record::Record& record) {

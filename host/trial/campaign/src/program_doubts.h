@@ -15,8 +15,9 @@ Warning doubt_about(const std::string& uav, const std::string& what);
 std::string check_program(const record::Record& record, const record::SutInfo& info, SutResult& sut,
                           std::vector<Warning>& warnings);
 
-/// The program that read its clock most often, of those that told so when they ended.
-timing::Pace::Polling polling_of(const record::Record& record);
+/// Why it is not known whether a program computed or waited, as programs told when they ended;
+/// empty: it is.
+std::string unclear_times(const record::Record& record);
 
 /// Where an unmodified program that did nothing with its UAV would have found it, as the rest of a
 /// reason; empty: there is none.

@@ -150,7 +150,7 @@ void fields(auto& io, Maybe<UavEnergy> auto& m) {
   io("charge_to", m.charge_to);
   io.derived("more_flights", m.more_flights());
   io("least_voltage_v", m.least_voltage_V);
-  if (io.has("was_cut_off", m.was_cut_off)) io("was_cut_off", m.was_cut_off);
+  if (io.has("cut_off_at_s", m.cut_off_at != SimTime::max())) io("cut_off_at_s", m.cut_off_at);
   io("tasks", m.tasks);
 }
 

@@ -262,12 +262,14 @@ TEST_F(MakeResult, CommandsThatHadNoEffectAreDoubtful) {
   EXPECT_EQ(doubts({{"uav1", false, "late", {}}}), "") << "a slow computer can be why";
 }
 
-TEST_F(MakeResult, TellsWhichProgramWaitedInALoop) {
+TEST_F(MakeResult, TellsWhyItIsNotKnownWhetherAProgramWaited) {
   record::Record record = finished_record();
   record.header.policy = record::kConservativeBarrier;
-  record.annotations.push_back(
-      {{}, 0, {"uav1", {}, uav::kClientReport, R"({"clock_read_hz": 4e5})"}});
-  EXPECT_EQ(make(record, kReached).pace->polling, (timing::Pace::Polling{"uav1", 4e5}));
+  auto& report = record.annotations.emplace_back().message;
+  report = {"uav1", {}, uav::kClientReport, R"({"clock_read_hz": 4e5})"};
+  EXPECT_THAT(make(record, kReached).pace->unclear, HasSubstr("reads its clock every 2.5 µs"));
+  report.json = R"({"clock_read_hz": 0, "others_ms": 5804})";
+  EXPECT_THAT(make(record, kReached).pace->unclear, HasSubstr("5.8 s are of threads other"));
 }
 
 TEST_F(MakeResult, TakesEverythingFromTheRecord) {

@@ -62,6 +62,9 @@ TEST_F(Machine, IsBusyIfOthersTakeATenthOfIt) {
   EXPECT_EQ(doubt->subject, "");
   EXPECT_NEAR(doubt->amount, 0.105, 1e-9) << "more than its blocks show";
   EXPECT_FALSE(doubt_of(busy, false)) << "a CPU clock does not count what others take";
+  EXPECT_FALSE(doubt_of({"host", 0.0, 0.4}, false));
+  EXPECT_NEAR(doubt_of({"host", 0.0, 0.9}, false).value().amount, 0.81, 1e-9)
+      << "but slower caches";
   EXPECT_EQ(load(false).others, 0.0);
 }
 

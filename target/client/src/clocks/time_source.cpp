@@ -54,6 +54,7 @@ class CpuSource final : public TimeSource {
   Duration elapsed_in_children() const override;
   void hold() const override;
   Duration computed_beside() const override;
+  Duration computed_by_others() const override;
   Status complete() const override;
   void leave_out(Duration computed) override {
     const std::lock_guard lock(mutex_);
@@ -69,6 +70,8 @@ class CpuSource final : public TimeSource {
   void read_own() const;
   void read_children() const;
   Duration own() const;
+  /// What threads other than the calling one have computed.
+  Duration of_others() const { return own() - counted_of_thread(); }
   Duration children() const;
   void exclude(Duration of_thread) const {
     excluded_before_ += of_thread;
@@ -87,6 +90,7 @@ class CpuSource final : public TimeSource {
   pthread_t excluded_thread_{};  // if there is excluded_clock_
   // What excluded threads used, without the present one's clock, and looking at children.
   mutable Duration excluded_before_{0};
+  const Duration others_before_ = of_others();  // the program's, before it had this clock
 };
 
 // What is read here cannot be read at the same instant; what that may take back is held back.
@@ -107,8 +111,9 @@ Duration CpuSource::elapsed() const {
 
 Duration CpuSource::elapsed_at_resume() const {
   const std::lock_guard lock(mutex_);
+  // Of one call, it can be less than nothing: the two clocks are not read at one instant.
   if (const auto since = std::exchange(others_at_hold_, std::nullopt))
-    beside_ += std::max(Duration(0), cpu_time_of_other_threads() - *since);
+    beside_ += of_others() - *since;
   read_children();
   read_own();
   return scaled(newest_own_ + newest_children_, factor_);
@@ -116,12 +121,17 @@ Duration CpuSource::elapsed_at_resume() const {
 
 void CpuSource::hold() const {
   const std::lock_guard lock(mutex_);
-  if (__libc_single_threaded == 0) others_at_hold_ = cpu_time_of_other_threads();
+  if (__libc_single_threaded == 0) others_at_hold_ = of_others();
 }
 
 Duration CpuSource::computed_beside() const {
   const std::lock_guard lock(mutex_);
-  return scaled(beside_, factor_);
+  return scaled(std::max(Duration(0), beside_), factor_);
+}
+
+Duration CpuSource::computed_by_others() const {
+  const std::lock_guard lock(mutex_);
+  return scaled(std::max(Duration(0), of_others() - others_before_ - beside_), factor_);
 }
 
 Duration CpuSource::elapsed_in_children() const {

@@ -47,6 +47,8 @@ Failure protocol_failure(const std::string& what) {
 // As much as makes an unseen wait doubtful: that long, and one part in a hundred of its time.
 constexpr Duration kLeastUncharged = std::chrono::milliseconds(100);
 constexpr std::int64_t kLeastPartUncharged = 100;
+/// From this part on, what the program is charged may be what others computed while it waited.
+constexpr std::int64_t kLeastPartOfOthers = 5;
 
 Failure mission_finished() {
   return {Failure::Kind::kInvalid, "the mission is finished; no more calls are possible"};
@@ -276,24 +278,31 @@ Status InteractingVehicle::commanded(Status status) {
   return status;
 }
 
-// A program may ignore both, and say that it has reached its goal.
+// What a program may ignore and say that it has reached its goal, and what leaves open why it has
+// not.
+std::string InteractingVehicle::report() const {
+  const Duration et = now().time_since_epoch();
+  const auto in_ms = [](Duration time, Duration least) {
+    return time < least ? 0 : time / std::chrono::milliseconds(1);
+  };
+  const auto uncharged_ms =
+      in_ms(computed_beside(), std::max(kLeastUncharged, et / kLeastPartUncharged));
+  const auto others_ms =
+      in_ms(computed_by_others(), std::max(kLeastUncharged, et / kLeastPartOfOthers));
+  const double read_hz = static_cast<double>(clock_reads_) / std::max(1.0, to_seconds(et));
+  const auto clock_read_hz = read_hz > uav::kPollingClock_hz ? std::lround(read_hz) : 0;
+  if (refused_commands_ == 0 && uncharged_ms == 0 && others_ms == 0 && clock_read_hz == 0)
+    return "";
+  return "{\"refused_commands\": " + std::to_string(refused_commands_) +
+         ", \"uncharged_ms\": " + std::to_string(uncharged_ms) +
+         ", \"others_ms\": " + std::to_string(others_ms) +
+         ", \"clock_read_hz\": " + std::to_string(clock_read_hz) + "}";
+}
+
 Status InteractingVehicle::finish(bool reached_goal, std::string_view outcome,
                                   std::string_view details_json) {
-  Duration uncharged = computed_beside();
-  if (uncharged < kLeastUncharged || uncharged * kLeastPartUncharged <= now().time_since_epoch())
-    uncharged = Duration(0);
-  const double clock_read_hz =
-      static_cast<double>(clock_reads_) / std::max(1.0, to_seconds(now().time_since_epoch()));
-  const bool polls = clock_read_hz > uav::kPollingClock_hz;
-  if (refused_commands_ > 0 || uncharged > Duration(0) || polls)
-    if (const Status noted = annotate(
-            uav::kClientReport,
-            "{\"refused_commands\": " + std::to_string(refused_commands_) +
-                ", \"uncharged_ms\": " + std::to_string(uncharged / std::chrono::milliseconds(1)) +
-                ", \"clock_read_hz\": " + std::to_string(polls ? std::lround(clock_read_hz) : 0) +
-                "}");
-        !noted)
-      return noted;
+  if (const std::string notes = report(); !notes.empty())
+    if (const Status noted = annotate(uav::kClientReport, notes); !noted) return noted;
   Status done = status_of(
       interact(link::Finish{reached_goal, std::string(outcome), std::string(details_json)}));
   if (done) close();

@@ -69,6 +69,7 @@ class InteractingVehicle : public Vehicle {
   virtual Result<link::Reply> interact(Body body) = 0;
   /// As TimeSource has it.
   virtual Duration computed_beside() const { return Duration::zero(); }
+  virtual Duration computed_by_others() const { return Duration::zero(); }
   /// Each call of now() counts: a program that waits in a loop makes very many.
   void count_clock_read() const { clock_reads_.fetch_add(1, std::memory_order_relaxed); }
   /// The mission is finished: lets go of the coordinator.
@@ -84,6 +85,8 @@ class InteractingVehicle : public Vehicle {
   Status usable() const;
 
  private:
+  /// What is to be known at the end (uav::kClientReport), as JSON; empty: nothing.
+  std::string report() const;
   /// Counts commands that were invalid. @return `status`
   Status commanded(Status status);
   Result<uav::Sample> take_sample(link::Reply reply, const uav::SensorDescription& sensor,

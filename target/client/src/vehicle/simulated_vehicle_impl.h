@@ -53,6 +53,7 @@ class SimulatedVehicle final : public InteractingVehicle {
 
   Result<link::Reply> interact(Body body) override;
   Duration computed_beside() const override { return source_->computed_beside(); }
+  Duration computed_by_others() const override { return source_->computed_by_others(); }
   void close() override;
 
   /// What the calls do during their Call.

@@ -68,11 +68,13 @@ TEST(CpuSource, CountsEveryThreadExceptAnExcludedOne) {
   EXPECT_GE(source->elapsed() - begin, kBusy);
 }
 
-TEST(CpuSource, KnowsWhatOtherThreadsComputeDuringACall) {
+TEST(CpuSource, KnowsWhatOtherThreadsComputeDuringCallsAndBetweenThem) {
   const auto source = make_cpu_source(2.0);
   std::thread worker([] { compute(30ms); });  // from now on, there can be several
   worker.join();
   EXPECT_EQ(source->computed_beside(), Duration(0)) << "no call";
+  EXPECT_GE(source->computed_by_others(), 60ms);
+  EXPECT_LT(source->computed_by_others(), 80ms);
   source->hold();
   compute(30ms);
   source->elapsed_at_resume();
@@ -82,6 +84,7 @@ TEST(CpuSource, KnowsWhatOtherThreadsComputeDuringACall) {
   source->elapsed_at_resume();
   EXPECT_GE(source->computed_beside(), 60ms);
   EXPECT_LT(source->computed_beside(), 80ms);
+  EXPECT_LT(source->computed_by_others(), 80ms) << "between calls";
 }
 
 TEST(CpuSource, IsMonotoneWhileAnExcludedThreadRuns) {

@@ -287,7 +287,8 @@ TEST_F(SimulatedVehicleTest, SaysAtItsEndHowManyCommandsItRefused) {
   ASSERT_EQ(heard.size(), 2u);
   const auto& annotation = std::get<link::Annotation>(heard[0]);
   EXPECT_EQ(annotation.topic, uav::kClientReport);
-  EXPECT_EQ(annotation.json, R"({"refused_commands": 3, "uncharged_ms": 0, "clock_read_hz": 0})");
+  EXPECT_EQ(annotation.json,
+            R"({"refused_commands": 3, "uncharged_ms": 0, "others_ms": 0, "clock_read_hz": 0})");
 }
 
 TEST_F(SimulatedVehicleTest, SaysAtItsEndThatItWaitedInALoop) {

@@ -121,8 +121,9 @@ inline constexpr Duration kLongestTrajectory = std::chrono::hours(1);
 
 /// Topic of an annotation with which the library's programs end if it refused commands of theirs,
 /// which were invalid; if other threads computed during calls, which a clock of CPU time does not
-/// charge; or if they read their clock so often that they probably wait in a loop:
-/// {"refused_commands": 20, "uncharged_ms": 0, "clock_read_hz": 0}, the times in execution time.
+/// charge, or between them, which it does; or if they read their clock so often that they probably
+/// wait in a loop: {"refused_commands": 20, "uncharged_ms": 0, "others_ms": 0, "clock_read_hz": 0},
+/// the times in execution time.
 inline constexpr const char* kClientReport = "client_report";
 inline constexpr double kPollingClock_hz =
     20e3;  ///< no program reads it so often for anything else

@@ -26,6 +26,8 @@ class TimeSource {
   /// What other threads of the process have computed between hold() and elapsed_at_resume(),
   /// scaled, if that is measured and counted nowhere else.
   virtual Duration computed_beside() const { return Duration::zero(); }
+  /// The part of `elapsed()` that threads other than the calling one have computed.
+  virtual Duration computed_by_others() const { return Duration::zero(); }
   /// The part of the last `elapsed()` that processes started by the SUT's have computed. Monotone.
   virtual Duration elapsed_in_children() const { return Duration::zero(); }
   /// Of a replayed source: the SUT has computed for so long.

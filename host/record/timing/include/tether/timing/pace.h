@@ -118,13 +118,9 @@ struct Pace {
     friend bool operator==(const Unqueued&, const Unqueued&) = default;
   };
   std::vector<Unqueued> unqueued{};
-  /// Of the program that read its clock most often, if that is often enough to be a loop in which
-  /// it waits: what it waits so counts as computing. Left empty by `pace_of`, too.
-  struct Polling {
-    std::string uav{};
-    double clock_read_hz = 0.0;  ///< in execution time; 0: there is none
-    friend bool operator==(const Polling&, const Polling&) = default;
-  } polling{};
+  /// Why it is not known whether a program computed all of its times or waited, for a person;
+  /// empty: it is. Left empty by `pace_of`, too.
+  std::string unclear{};
 
   Speed speed{};             ///< of all programs of the run
   std::string radio{};       ///< its settings, to compare them; empty: there is none

@@ -142,8 +142,10 @@ struct UavEnergy {
 
   /// How many more such flights the charge that is left is enough for; none if none was used.
   std::optional<double> more_flights() const;
-  bool was_cut_off = false;  ///< its voltage fell too low, or it was asked for more than it has
-  bool is_empty() const { return charge_to <= 0.0 || was_cut_off; }
+  /// From when on it gave no power, because its voltage fell too low, or it was asked for more than
+  /// it has, as the record shows; never: SimTime::max().
+  SimTime cut_off_at = SimTime::max();
+  bool is_empty() const { return charge_to <= 0.0 || cut_off_at != SimTime::max(); }
   friend bool operator==(const UavEnergy&, const UavEnergy&) = default;
 };
 double total_J(const energy::Energies_J& spent_J);
