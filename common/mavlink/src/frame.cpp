@@ -28,16 +28,12 @@ std::vector<std::uint8_t> encode(const Message& message, Address from, std::uint
   std::size_t length = payload.size();
   while (length > 1 && payload[length - 1] == 0) --length;
   const std::uint32_t id = message.type().id;
-  std::vector<std::uint8_t> bytes = {kMagic2,
-                                     static_cast<std::uint8_t>(length),
-                                     signer == nullptr ? std::uint8_t{0} : kIsSigned,
-                                     0,
-                                     sequence,
-                                     from.system,
-                                     from.component,
-                                     static_cast<std::uint8_t>(id & 0xFFU),
-                                     static_cast<std::uint8_t>(id >> 8U & 0xFFU),
-                                     static_cast<std::uint8_t>(id >> 16U)};
+  std::vector<std::uint8_t> bytes;
+  bytes.reserve(kHeader2 + length + kChecksum + (signer == nullptr ? 0 : kSignatureBytes));
+  bytes.assign({kMagic2, static_cast<std::uint8_t>(length),
+                signer == nullptr ? std::uint8_t{0} : kIsSigned, 0, sequence, from.system,
+                from.component, static_cast<std::uint8_t>(id & 0xFFU),
+                static_cast<std::uint8_t>(id >> 8U & 0xFFU), static_cast<std::uint8_t>(id >> 16U)});
   bytes.insert(bytes.end(), payload.begin(), payload.begin() + static_cast<std::ptrdiff_t>(length));
   const std::uint16_t crc = checksum(std::span(bytes).subspan(1), message.type().crc_extra);
   bytes.push_back(static_cast<std::uint8_t>(crc & 0xFFU));
@@ -116,7 +112,7 @@ Decoder::Outcome Decoder::take(std::span<const std::uint8_t> bytes, bool waits, 
   used = whole;
   if (!is_authentic(bytes.first(whole), frame)) return Outcome::kSkip;
   frame.message.set_payload(bytes.subspan(header, length));
-  frames.push_back(std::move(frame));
+  frames.push_back(frame);
   return Outcome::kFrame;
 }
 

@@ -108,13 +108,11 @@ const Field& Message::find(std::string_view name, std::size_t i) const {
   return *field;
 }
 
-double Message::number(std::string_view name, std::size_t i) const {
-  const Field& field = find(name, i);
+double Message::number(const Field& field, std::size_t i) const {
   return with_type(field.type, [&]<class T>(T) { return static_cast<double>(load<T>(field, i)); });
 }
 
-std::int64_t Message::integer(std::string_view name, std::size_t i) const {
-  const Field& field = find(name, i);
+std::int64_t Message::integer(const Field& field, std::size_t i) const {
   return with_type(field.type, [&]<class T>(T) -> std::int64_t {
     if constexpr (std::is_floating_point_v<T>)
       return within<std::int64_t>(static_cast<double>(load<T>(field, i)));
@@ -151,8 +149,8 @@ Message& Message::set_text(std::string_view name, std::string_view text) {
 }
 
 void Message::set_payload(std::span<const std::uint8_t> bytes) {
-  std::ranges::fill(payload_, std::uint8_t{0});
-  std::ranges::copy(bytes.first(std::min(bytes.size(), payload_.size())), payload_.begin());
+  payload_.fill(0);
+  std::ranges::copy(bytes.first(std::min(bytes.size(), type_->length)), payload_.begin());
 }
 
 }  // namespace tether::mavlink

@@ -1,6 +1,8 @@
 #include <cmath>
+#include <iterator>
 #include <string>
 
+#include <fmt/compile.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -10,27 +12,32 @@
 namespace tether::autopilot {
 namespace {
 
-std::string value_of(const mavlink::Message& m, const mavlink::Field& field, std::size_t i) {
+void add_value(std::string& json, const mavlink::Message& m, const mavlink::Field& field,
+               std::size_t i) {
   using mavlink::Type;
-  if (field.type == Type::kUint64)
-    return std::to_string(static_cast<std::uint64_t>(m.integer(field.name, i)));
-  if (field.type != Type::kFloat && field.type != Type::kDouble)
-    return std::to_string(m.integer(field.name, i));
-  const double value = m.number(field.name, i);
-  if (!std::isfinite(value)) return "null";
-  return field.type == Type::kFloat ? fmt::format("{}", static_cast<float>(value))
-                                    : fmt::format("{}", value);
+  const auto add = [to = std::back_inserter(json)](auto value) {
+    fmt::format_to(to, FMT_COMPILE("{}"), value);
+  };
+  if (field.type == Type::kUint64) return add(static_cast<std::uint64_t>(m.integer(field, i)));
+  if (field.type != Type::kFloat && field.type != Type::kDouble) return add(m.integer(field, i));
+  const double value = m.number(field, i);
+  if (!std::isfinite(value)) return add("null");
+  field.type == Type::kFloat ? add(static_cast<float>(value)) : add(value);
 }
 
-std::string values_of(const mavlink::Message& m, const mavlink::Field& field) {
-  if (field.type == mavlink::Type::kChar)
-    return nlohmann::json(m.text(field.name))
-        .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-  if (!field.is_array) return value_of(m, field, 0);
-  std::string values = "[";
-  for (std::size_t i = 0; i < field.count; ++i)
-    values += (i > 0 ? "," : "") + value_of(m, field, i);
-  return values + "]";
+void add_values(std::string& json, const mavlink::Message& m, const mavlink::Field& field) {
+  if (field.type == mavlink::Type::kChar) {
+    json += nlohmann::json(m.text(field.name))
+                .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+    return;
+  }
+  if (!field.is_array) return add_value(json, m, field, 0);
+  json += '[';
+  for (std::size_t i = 0; i < field.count; ++i) {
+    if (i > 0) json += ',';
+    add_value(json, m, field, i);
+  }
+  json += ']';
 }
 
 }  // namespace
@@ -43,7 +50,8 @@ std::vector<Decoded> decode(const Bytes& bytes) {
     std::string fields = "{";
     for (const mavlink::Field& field : m.type().fields) {
       if (fields.size() > 1) fields += ',';
-      fields += fmt::format("\"{}\":{}", field.name, values_of(m, field));
+      ((fields += '"') += field.name) += "\":";
+      add_values(fields, m, field);
     }
     messages.push_back({std::string(m.name()), fields + "}"});
   }

@@ -375,7 +375,8 @@ std::vector<StreamRate> stream_rates() {
 }
 
 Telemetry::Telemetry() {
-  for (const StreamRow& row : kStreams) streams_.push_back({.interval = interval_of(row)});
+  for (const StreamRow& row : kStreams)
+    streams_.push_back({.type = mavlink::find_type(row.name), .interval = interval_of(row)});
 }
 
 void Telemetry::step(const TelemetrySource& source, Outbox& outbox) {
@@ -388,7 +389,7 @@ void Telemetry::step(const TelemetrySource& source, Outbox& outbox) {
     }
     if (!is_due && !stream.is_requested) continue;
     stream.is_requested = false;
-    Message message(kStreams[i].name);
+    Message message(*stream.type);
     kStreams[i].fill(source, message);
     outbox.send(message);
   }

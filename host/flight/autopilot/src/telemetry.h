@@ -45,6 +45,7 @@ class Telemetry {
 
  private:
   struct Stream {
+    const mavlink::MessageType* type;
     std::optional<Duration> interval;  // none: only on request
     SimTime next{};
     bool is_requested = false;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -62,7 +63,7 @@ const MessageType* find_type(std::string_view name);
 /// array.
 class Message {
  public:
-  explicit Message(const MessageType& type) : type_(&type), payload_(type.length) {}
+  explicit Message(const MessageType& type) : type_(&type) {}
   /// By its name. @pre it is in the table
   explicit Message(std::string_view type);
 
@@ -71,9 +72,14 @@ class Message {
   bool is(std::string_view name) const { return type_->name == name; }
 
   /// A value, of any type but 64-bit integers exactly.
-  double number(std::string_view name, std::size_t i = 0) const;
+  double number(std::string_view name, std::size_t i = 0) const { return number(find(name, i), i); }
   /// Of an integer, exactly (64 bits without a sign as two's complement); others are rounded.
-  std::int64_t integer(std::string_view name, std::size_t i = 0) const;
+  std::int64_t integer(std::string_view name, std::size_t i = 0) const {
+    return integer(find(name, i), i);
+  }
+  /// The same of a field of its type. @pre i < field.count
+  double number(const Field& field, std::size_t i) const;
+  std::int64_t integer(const Field& field, std::size_t i) const;
   /// Of an array of characters, up to the first NUL.
   std::string text(std::string_view name) const;
 
@@ -89,7 +95,7 @@ class Message {
   Message& set_text(std::string_view name, std::string_view text);
 
   /// Of the type's length, little-endian.
-  std::span<const std::uint8_t> payload() const { return payload_; }
+  std::span<const std::uint8_t> payload() const { return std::span(payload_).first(type_->length); }
   /// What is missing is zero, and what is too much is ignored.
   void set_payload(std::span<const std::uint8_t> bytes);
 
@@ -106,7 +112,7 @@ class Message {
   static auto with_type(Type type, F&& f);
 
   const MessageType* type_;
-  std::vector<std::uint8_t> payload_;
+  std::array<std::uint8_t, 255> payload_{};
 };
 
 }  // namespace tether::mavlink

@@ -178,7 +178,7 @@ class Px4 final : public ExternalController {
   void serve() {
     for (mavlink::Frame& frame : decoder_.push(simulator_.receive()))
       if (frame.message.is("HIL_ACTUATOR_CONTROLS")) {
-        controls_ = std::move(frame.message);
+        controls_ = frame.message;
         has_sent_controls_ = true;
       }
     serve_link();
