@@ -274,7 +274,7 @@ void fly(const link::Address& address, const std::string& uav, Program program, 
   while (program == Program::kIdle && vehicle.now() < ExecTime(seconds))
     if (!vehicle.sleep_for(100ms)) break;
   while (program == Program::kActive && vehicle.now() < ExecTime(seconds))
-    if (const auto got = vehicle.receive(10ms);
+    if (const auto got = vehicle.receive_or_measure(10ms, {}, link::kMaxReceived);
         !got && got.failure().kind != Failure::Kind::kNothingYet)
       break;
   const bool is_fast = program == Program::kFastImu || program == Program::kSensors;

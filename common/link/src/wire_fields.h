@@ -137,6 +137,9 @@ void fields(auto& io, Is<SendMessage> auto& m) {
 void fields(auto& io, Is<ReceiveMessage> auto& m) {
   io("timeout_ns", m.timeout);
   io("sensors", m.sensors, OmitEmpty{}, AtMost{kMaxCatalogueEntries, "has too many sensors"});
+  io("most", m.most, Default{1u},
+     Rule{[](std::uint32_t most) { return most >= 1 && most <= kMaxReceived; },
+          "is not within 1..64"});
 }
 void fields(auto&, Is<ReadBattery> auto&) {}
 
@@ -167,6 +170,7 @@ void fields(auto& io, Is<Reply> auto& m) {
   stage_fields(io, "computing", m.computing);
   io("message", m.message);
   io("battery", m.battery);
+  io("more", m.more, OmitEmpty{}, AtMost{kMaxReceived - 1, "has too many messages"});
 }
 
 void fields(auto& io, Is<Progress> auto& m) {

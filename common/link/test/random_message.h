@@ -143,7 +143,9 @@ class RandomMessage {
     if (kind == 2) out.body = Sleep{time<ExecTime>(), coin()};
     if (kind == 3) out.body = Finish{coin(), text(), coin() ? json() : ""};
     if (kind == 4) out.body = SendMessage{text(), bytes()};
-    if (kind == 5) out.body = ReceiveMessage{time<ExecTime>().time_since_epoch(), sensors()};
+    if (kind == 5)
+      out.body = ReceiveMessage{time<ExecTime>().time_since_epoch(), sensors(),
+                                1 + random_.bits() % kMaxReceived};
     if (kind == 6) out.body = ReadBattery{};
     if (kind == 7) out.body = SetTrajectory{trajectory()};
     out.stages = stages();

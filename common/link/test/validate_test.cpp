@@ -81,6 +81,7 @@ TEST(Validate, Requests) {
   expect({"bytes", request_with(SendMessage{"", std::vector<std::uint8_t>(kMaxRadioBytes + 1)})});
   expect({"to", request_with(SendMessage{std::string(kMaxNameBytes + 1, 'u'), {}})});
   expect({"timeout", request_with(ReceiveMessage{Duration(-1)})});
+  expect({"most", request_with(ReceiveMessage{Duration(1), {}, kMaxReceived + 1})});
   expect({"arrived_at",
           Reply{.sequence = 1,
                 .resume_at = {},

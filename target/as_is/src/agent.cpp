@@ -79,12 +79,13 @@ bool Agent::receive_until(std::optional<ExecTime> until) {
   if (port_.has_receiver()) sensors.push_back(receiver_);
   const Duration timeout = until ? std::max(Duration(0), *until - now()) : kForEver;
   const auto received =
-      Unpaid::in_call([&] { return vehicle_->receive_or_measure(timeout, sensors); });
+      Unpaid::in_call([&] { return vehicle_->receive_or_measure(timeout, sensors, 1); });
   if (!received && received.failure().kind != Failure::Kind::kNothingYet) end(received.failure());
-  if (received && *received && (*received)->from == link::kAutopilot)
-    port_.deliver((*received)->bytes);
-  if (received && !*received) take_measured();
-  return received.ok();
+  if (!received) return false;
+  if (received->empty()) take_measured();
+  for (const client::RadioMessage& message : *received)
+    if (message.from == link::kAutopilot) port_.deliver(message.bytes);
+  return true;
 }
 
 void Agent::take_measured() {

@@ -246,20 +246,20 @@ bool AsIsSupervisor::receive(Duration timeout) {
   std::vector<std::string_view> names;
   for (std::size_t i = 0; i < sensors.size() && i < 64; ++i)
     if ((wanted >> i & 1) != 0) names.emplace_back(sensors[i].name);
-  const auto received = vehicle_->receive_or_measure(timeout, names);
+  const auto received = vehicle_->receive_or_measure(timeout, names, 1);
   publish();
   if (!received && !check(received.failure())) return false;
-  if (received) deliver(received);
+  if (received) deliver(*received);
   return received.ok();
 }
 
-void AsIsSupervisor::deliver(const Result<std::optional<client::RadioMessage>>& received) {
-  const bool is_message = received->has_value();
+void AsIsSupervisor::deliver(const std::vector<client::RadioMessage>& received) {
+  const bool is_message = !received.empty();
   link::Reply event = reply_of(
       static_cast<std::uint64_t>(is_message ? GroupEvent::kMessage : GroupEvent::kMeasured),
       vehicle_->now());
   if (is_message) {
-    const client::RadioMessage& message = **received;
+    const client::RadioMessage& message = received.front();
     event.message = {message.from, message.sent_at, message.arrived_at, message.bytes};
   }
   for (const auto& [line, process] : std::map(lines_))

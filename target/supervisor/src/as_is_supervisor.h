@@ -61,7 +61,7 @@ class AsIsSupervisor {
   void on_request(CallerId caller, link::Request request);
   void on_gone(CallerId caller);
   void tell(CallerId line, link::Reply event);
-  void deliver(const Result<std::optional<client::RadioMessage>>& received);
+  void deliver(const std::vector<client::RadioMessage>& received);
   bool receive(Duration timeout);
   void pull();
   void pull_now_and_then();

@@ -98,6 +98,7 @@ class Coordinator::Impl {
   void release_ready();
   void settle();
   void reply(Session& session, std::size_t open_index, SimTime st);
+  void receive(const Session& session, PendingInteraction& pending, link::Reply& reply);
   void leave(Session& session);
   void computes_from(std::size_t uav, ExecTime at, WallTime since);
 

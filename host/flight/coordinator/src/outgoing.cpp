@@ -61,11 +61,7 @@ void Coordinator::Impl::reply(Session& session, std::size_t open_index, SimTime 
                       .sample = stepper_.measure(session.uav, entry),
                       .computing = session.time_given()};
   if (entry.kind == record::kBattery) message.battery = stepper_.read_battery(session.uav, entry);
-  if (const auto& received = pending.received) {
-    entry.received = {received->from, received->sequence, received->at};
-    radio_.received(session.uav, *received);
-    message.message = {received->from, received->sent_at, received->at, *received->bytes};
-  }
+  if (pending.received) receive(session, pending, message);
   const std::optional<uav::CameraSample> image = image_to_record(
       session, pending.request, message, entry.sample_state_at.value_or(SimTime{}), options_);
   entry.st_at_release = st;
@@ -85,6 +81,26 @@ void Coordinator::Impl::reply(Session& session, std::size_t open_index, SimTime 
   log_.interaction(st, std::move(entry));
   if (image) log_.image(st, session.uav_name, sensor, *image);
   if (is_last) leave(session);
+}
+
+// What arrives by the time of the reply has arrived: no earlier message can come any more.
+void Coordinator::Impl::receive(const Session& session, PendingInteraction& pending,
+                                link::Reply& reply) {
+  const auto take = [&](const Received& received) {
+    radio_.received(session.uav, received);
+    return link::RadioMessage{received.from, received.sent_at, received.at, *received.bytes};
+  };
+  record::Interaction& entry = pending.entry;
+  entry.received = {pending.received->from, pending.received->sequence, pending.received->at};
+  reply.message = take(*pending.received);
+  if (reply.message->from != link::kAutopilot || session.hello.concurrent) return;
+  const std::size_t more = std::get<link::ReceiveMessage>(pending.request.body).most - 1;
+  while (reply.more.size() < more) {
+    const auto next = radio_.take_next_of_controller(session.uav, same_instant(entry.reply_at));
+    if (!next) break;
+    reply.more.push_back(take(*next));
+  }
+  entry.received_more = reply.more.size();
 }
 
 // What the threads of a concurrent SUT compute while others wait is not known; what a SUT on a

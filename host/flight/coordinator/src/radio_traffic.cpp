@@ -47,6 +47,12 @@ std::optional<Received> RadioTraffic::take_first(std::size_t uav, SimTime latest
   return message;
 }
 
+std::optional<Received> RadioTraffic::take_next_of_controller(std::size_t uav, SimTime latest) {
+  const auto& inbox = boxes_[uav].inbox;
+  if (inbox.empty() || inbox.front().from != link::kAutopilot) return std::nullopt;
+  return take_first(uav, latest);
+}
+
 std::optional<sync::SutTime> RadioTraffic::next() const {
   const auto next = medium_.next();
   if (!next) return std::nullopt;

@@ -43,6 +43,8 @@ class RadioTraffic {
   /// Takes the first message that has arrived by then, for a call. In free running, it can have
   /// arrived within the step after ST.
   std::optional<Received> take_first(std::size_t uav, SimTime latest);
+  /// Takes the next one if it is of the flight controller and has arrived by then.
+  std::optional<Received> take_next_of_controller(std::size_t uav, SimTime latest);
   /// The call has ended: there is room for another one.
   void received(std::size_t uav, const Received& message) { --room_of(uav, message.from).taken; }
   /// Its SUT receives nothing any more.

@@ -49,7 +49,9 @@ Interleaving draw(std::uint64_t seed, int acts) {
         if (what < 2) script.push_back(to_controller(compute, ++number, 8 + random.bits() % 40));
         if (what == 2) script.push_back(sleep(compute, microseconds(random.bits() % 3'000)));
         if (what == 3 && k % 20 == 0) script.push_back(read(compute, kRange));
-        if (what >= 4) script.push_back(receive(compute, microseconds(random.bits() % 5'000)));
+        if (what >= 4)
+          script.push_back(receive(compute, microseconds(random.bits() % 5'000),
+                                   what == 7 ? 1 + random.bits() % 4 : 1));
       }
     }
     for (int k = 0; k < acts / 10; ++k) threads[0].push_back(receive({}, milliseconds(3)));
@@ -179,29 +181,35 @@ class InterleavingTest : public ControllerLinksTest {
     for (const record::Interaction& entry : calls) {
       ++messages_;
       EXPECT_EQ(entry.received->sequence, ++sequence) << "none lost, none twice";
+      sequence += entry.received_more;
       EXPECT_GE(same_instant(entry.reply_at), entry.received->arrived_at) << "from the future";
     }
     for (const link::Reply& reply : replies_to(static_cast<link::PeerId>(uav + 1))) {
       if (!reply.message) continue;
-      EXPECT_EQ((to_ns(reply.message->sent_at) - 1) % run.period.count(), 0);
-      EXPECT_GE(reply.message->arrived_at, reply.message->sent_at + run.latency);
-      if (run.baud == 0.0) {
-        EXPECT_EQ(reply.message->arrived_at, reply.message->sent_at + run.latency);
-      }
-      EXPECT_GE(same_instant(reply.resume_at), reply.message->arrived_at);
-      const std::uint64_t number = number_of(reply.message->bytes);
-      if (number < kEcho) {
-        if (run.scripts[uav].size() == 1) {
-          EXPECT_EQ(number, ++own) << "in order";
+      std::vector<link::RadioMessage> messages = reply.more;
+      messages.insert(messages.begin(), *reply.message);
+      together_ += reply.more.size();
+      for (const link::RadioMessage& message : messages) {
+        EXPECT_EQ((to_ns(message.sent_at) - 1) % run.period.count(), 0);
+        EXPECT_GE(message.arrived_at, message.sent_at + run.latency);
+        if (run.baud == 0.0) {
+          EXPECT_EQ(message.arrived_at, message.sent_at + run.latency);
         }
-      } else {
-        ASSERT_LT(echoes, taken_[uav].size());
-        if (run.scripts[uav].size() == 1) {
-          EXPECT_EQ(number - kEcho, taken_[uav][echoes].number) << "in order";
+        EXPECT_GE(same_instant(reply.resume_at), message.arrived_at);
+        const std::uint64_t number = number_of(message.bytes);
+        if (number < kEcho) {
+          if (run.scripts[uav].size() == 1) {
+            EXPECT_EQ(number, ++own) << "in order";
+          }
+        } else {
+          ASSERT_LT(echoes, taken_[uav].size());
+          if (run.scripts[uav].size() == 1) {
+            EXPECT_EQ(number - kEcho, taken_[uav][echoes].number) << "in order";
+          }
+          EXPECT_EQ(message.sent_at, taken_[uav][echoes].at + Duration(1))
+              << "at the step that has taken it";
+          ++echoes;
         }
-        EXPECT_EQ(reply.message->sent_at, taken_[uav][echoes].at + Duration(1))
-            << "at the step that has taken it";
-        ++echoes;
       }
     }
   }
@@ -233,7 +241,7 @@ class InterleavingTest : public ControllerLinksTest {
     }
   }
 
-  std::uint64_t messages_ = 0, interleavings_ = 0;
+  std::uint64_t messages_ = 0, together_ = 0, interleavings_ = 0;
 };
 
 // A sanitizer, which looks for other faults, is several times slower.
@@ -242,6 +250,7 @@ constexpr std::uint64_t kShare = TETHER_ADDRESS_SANITIZER || TETHER_THREAD_SANIT
 TEST_F(InterleavingTest, KeepTheRulesInLongRuns) {
   for (std::uint64_t seed = 1; messages_ < 100'000 / kShare && !HasFatalFailure(); ++seed)
     check(seed, 120);
+  EXPECT_GT(together_, messages_ / 100);
 }
 
 TEST_F(InterleavingTest, KeepTheRulesInManyShortRuns) {

@@ -90,6 +90,24 @@ TEST_F(ControllerLinksTest, ARoundTripIsAStepAndTheLatencies) {
   EXPECT_EQ(reply.resume_at, us(5'500) + Duration(1));
 }
 
+TEST_F(ControllerLinksTest, OneReplyHasWhatArrivesAtAnInstant) {
+  make_links(1, {.own = 3});
+  const RunReport report =
+      run({receive(milliseconds(1), milliseconds(5), 9), receive({}, milliseconds(5), 2),
+           receive({}, Duration(0), 9), receive(milliseconds(7), Duration(0), 9), finish({})});
+  ASSERT_EQ(report.end, RunEnd::kFinished) << report.reason;
+  std::vector<std::vector<std::uint64_t>> received;
+  for (const link::Reply& reply : replies_to(1)) {
+    if (!reply.message) continue;
+    received.push_back({number_of(reply.message->bytes)});
+    for (const link::RadioMessage& m : reply.more) received.back().push_back(number_of(m.bytes));
+  }
+  EXPECT_THAT(received, ElementsAre(ElementsAre(1, 2, 3), ElementsAre(4, 5), ElementsAre(6),
+                                    ElementsAre(7, 8, 9)));
+  EXPECT_EQ(recorder_.interactions.at(0).received_more, 2U);
+  EXPECT_EQ(recorder_.interactions.at(2).received_more, 0U);
+}
+
 TEST_F(ControllerLinksTest, WhatItFollowsHoldsFromItsStepOn) {
   make_links(1, {});
   run({to_controller(microseconds(4'100), 1), finish(milliseconds(20))});

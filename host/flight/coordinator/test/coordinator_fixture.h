@@ -58,8 +58,8 @@ inline Act sleep(Duration compute, Duration duration) {
 inline Act send(Duration compute, std::string to = "", std::size_t bytes = 10) {
   return {compute, link::SendMessage{std::move(to), std::vector<std::uint8_t>(bytes, 7)}};
 }
-inline Act receive(Duration compute, Duration timeout) {
-  return {compute, link::ReceiveMessage{timeout}};
+inline Act receive(Duration compute, Duration timeout, std::uint32_t most = 1) {
+  return {compute, link::ReceiveMessage{timeout, {}, most}};
 }
 inline Act finish(Duration compute) {
   return {compute, link::Finish{true, "done", "{}"}};

@@ -137,7 +137,7 @@ class RadioCheck {
     if (found != inbox.begin() && !info.concurrent)
       report_.add(3, entry, "received message {} of \"{}\" before others that arrived earlier",
                   m.received->sequence, m.received->from);
-    inbox.erase(found);
+    check_more(entry, inbox, inbox.erase(found));
     const Wide due = std::max(wide(m.request_at), wide(arrived_at));
     if (m.received->arrived_at != arrived_at)
       report_.add(1, entry, "received a message that arrived at {}, at {} in its own entry",
@@ -146,6 +146,19 @@ class RadioCheck {
       report_.add(wide(m.reply_at) < due ? 1 : 3, entry,
                   "received at ET {} what arrived at {}; requested at ET {}", ns(m.reply_at),
                   ns(arrived_at), ns(m.request_at));
+  }
+
+  // Those that came next, of the flight controller only.
+  void check_more(const Entry& entry, std::deque<Inboxed>& inbox,
+                  std::deque<Inboxed>::iterator next) {
+    const record::Interaction& m = entry.message;
+    for (std::uint64_t i = 0; i < m.received_more; ++i) {
+      if (m.received->from != kAutopilot || next == inbox.end() || next->from != kAutopilot ||
+          wide(next->at) > wide(m.reply_at))
+        return report_.add(1, entry, "received {} more messages at ET {}, of which {} had arrived",
+                           m.received_more, ns(m.reply_at), i);
+      next = inbox.erase(next);
+    }
   }
 
   // Of a message at the very instant of the timeout, the order of UAVs decides.

@@ -18,7 +18,7 @@ constexpr std::int64_t kControllerPeriod_ns = 4'000'000, kLatency_ns = 300'000;
 constexpr std::uint64_t kBytes = 40;
 
 // Each 1.3 ms the SUT sends; the controller answers each message at the step that takes it, with
-// two messages in one, and the SUT receives the answer to the last one.
+// two messages in one, and the SUT receives the answers to the first four.
 Record flight(double baud = 0.0) {
   Record record;
   record.header.policy = record::kConservativeBarrier;
@@ -67,6 +67,7 @@ Record flight(double baud = 0.0) {
   auto received = call("a", "receive", 16'000'000, 16'000'000, 13);
   received.message.receive_until = from_ns<ExecTime>(40'000'000);
   received.message.received = {"autopilot", 1, record.autopilot[1].message.at};
+  received.message.received_more = 3;
   record.interactions.push_back(received);
   record.interactions.push_back(call("a", "finish", 30'000'000, 30'000'000, 14));
   for (std::size_t i = 0; i < record.interactions.size(); ++i) record.interactions[i].order = i;
@@ -218,6 +219,9 @@ const Planted kOfAutopilots[] = {
        m.received->sequence = 12;
        m.received->arrived_at = message(r, false, 12).at;
      }},
+    {"ReceivedMoreThanHadArrived",
+     {1},
+     [](Record& r) { r.interactions[12].message.received_more = 11; }},
     {"OfAUavWithoutAController", {0}, [](Record& r) { r.header.suts[0].controller.reset(); }},
     {"APeriodOfZero", {0}, [](Record& r) { r.header.suts[0].controller->period = Duration(0); }},
 };

@@ -86,6 +86,7 @@ inline Interaction receive_interaction(std::uint64_t sequence = 5) {
   Interaction message = interaction(kReceive, sequence);
   message.receive_until = et_ns(60'000'000);
   message.received = {"b", 3, st_ms(40)};
+  message.received_more = 2;
   return message;
 }
 

@@ -69,7 +69,10 @@ Status check(const link::Reply& reply, const link::Request& request,
       uav::sampled_at(*reply.sample) > same_instant(reply.resume_at)) {
     return protocol_failure("its sample is from the future");
   }
-  if (reply.message && reply.message->arrived_at > same_instant(reply.resume_at)) {
+  const auto is_later = [&](const link::RadioMessage& message) {
+    return message.arrived_at > same_instant(reply.resume_at);
+  };
+  if ((reply.message && is_later(*reply.message)) || std::ranges::any_of(reply.more, is_later)) {
     return protocol_failure("its message is from the future");
   }
   if (reply.battery && reply.battery->sampled_at > same_instant(reply.resume_at)) {
@@ -228,16 +231,16 @@ Status InteractingVehicle::send(std::string_view to, std::span<const std::uint8_
 }
 
 Result<RadioMessage> InteractingVehicle::receive(Duration timeout) {
-  auto message = receive_or_measure(timeout, {});
-  if (!message) return message.failure();
-  return std::move(**message);
+  auto messages = receive_or_measure(timeout, {}, 1);
+  if (!messages) return messages.failure();
+  return std::move(messages->front());
 }
 
 // Without a message, a reply before the timeout is there for a sensor.
-Result<std::optional<RadioMessage>> InteractingVehicle::receive_or_measure(
-    Duration timeout, std::span<const std::string_view> sensors) {
+Result<std::vector<RadioMessage>> InteractingVehicle::receive_or_measure(
+    Duration timeout, std::span<const std::string_view> sensors, std::uint32_t most) {
   const Duration longest{link::kMaxTimestampNs / 2};
-  link::ReceiveMessage receive{std::clamp(timeout, Duration::zero(), longest)};
+  link::ReceiveMessage receive{std::clamp(timeout, Duration::zero(), longest), {}, most};
   for (const std::string_view name : sensors) {
     const auto index = find_periodic(name);
     if (!index) return index.failure();
@@ -247,12 +250,17 @@ Result<std::optional<RadioMessage>> InteractingVehicle::receive_or_measure(
   const ExecTime timed_out_at = sensors.empty() ? ExecTime{} : now() + receive.timeout;
   auto reply = interact(std::move(receive));
   if (!reply) return reply.failure();
-  if (!reply->message && reply->resume_at < timed_out_at) return std::optional<RadioMessage>();
+  std::vector<RadioMessage> received;
+  if (!reply->message && reply->resume_at < timed_out_at) return received;
   if (!reply->message)
     return Failure{Failure::Kind::kNothingYet, "no message has arrived by the timeout"};
-  link::RadioMessage& message = *reply->message;
-  return std::optional(RadioMessage{std::move(message.from), message.sent_at, message.arrived_at,
-                                    std::move(message.bytes)});
+  const auto take = [&](link::RadioMessage& message) {
+    received.push_back(
+        {std::move(message.from), message.sent_at, message.arrived_at, std::move(message.bytes)});
+  };
+  take(*reply->message);
+  std::ranges::for_each(reply->more, take);
+  return received;
 }
 
 // --- commands and the end -----------------------------------------------------------------------

@@ -49,8 +49,9 @@ class InteractingVehicle : public Vehicle {
   const std::vector<std::string>& peers() const final { return peers_; }
   Status send(std::string_view to, std::span<const std::uint8_t> bytes) final;
   Result<RadioMessage> receive(Duration timeout) final;
-  Result<std::optional<RadioMessage>> receive_or_measure(
-      Duration timeout, std::span<const std::string_view> sensors) final;
+  Result<std::vector<RadioMessage>> receive_or_measure(Duration timeout,
+                                                       std::span<const std::string_view> sensors,
+                                                       std::uint32_t most) final;
   Status finish(bool reached_goal, std::string_view outcome, std::string_view details_json) final;
 
   using Body = decltype(link::Request::body);

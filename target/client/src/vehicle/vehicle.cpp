@@ -43,8 +43,9 @@ Result<RadioMessage> Vehicle::receive(Duration) {
   return kNoRadio;
 }
 
-Result<std::optional<RadioMessage>> Vehicle::receive_or_measure(Duration,
-                                                                std::span<const std::string_view>) {
+Result<std::vector<RadioMessage>> Vehicle::receive_or_measure(Duration,
+                                                              std::span<const std::string_view>,
+                                                              std::uint32_t) {
   return Failure{Failure::Kind::kInvalid, "this vehicle waits for one thing at a time"};
 }
 

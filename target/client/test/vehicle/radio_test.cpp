@@ -23,6 +23,7 @@ class RadioOfVehicle : public testing::Test {
     if (const auto* receive = std::get_if<link::ReceiveMessage>(&request.body)) {
       reply.resume_at += ready_after_.value_or(receive->timeout);
       reply.message = incoming_;
+      reply.more = more_;
     }
     return {reply};
   }
@@ -35,6 +36,7 @@ class RadioOfVehicle : public testing::Test {
   }
 
   std::optional<link::RadioMessage> incoming_;
+  std::vector<link::RadioMessage> more_;
   std::optional<Duration> ready_after_;  // a sensor
   std::optional<ScriptedCoordinator> coordinator_;
 };
@@ -89,17 +91,32 @@ TEST_F(RadioOfVehicle, AWaitForASensorEndsWithNothingWhenThatIsReady) {
   const auto receiver = vehicle();
   const std::vector<std::string_view> sensors{"camera"};
   ready_after_ = milliseconds(1);
-  const auto nothing = receiver->receive_or_measure(milliseconds(30), sensors);
+  const auto nothing = receiver->receive_or_measure(milliseconds(30), sensors, 1);
   ASSERT_TRUE(nothing);
-  EXPECT_FALSE(*nothing);
+  EXPECT_TRUE(nothing->empty());
   EXPECT_THAT(std::get<link::ReceiveMessage>(coordinator_->requests().at(0).body).sensors,
               testing::SizeIs(1));
   ready_after_.reset();
-  EXPECT_EQ(receiver->receive_or_measure(milliseconds(30), sensors).failure().kind,
+  EXPECT_EQ(receiver->receive_or_measure(milliseconds(30), sensors, 1).failure().kind,
             Failure::Kind::kNothingYet);
   const std::vector<std::string_view> none{"no such sensor"};
-  EXPECT_EQ(receiver->receive_or_measure(milliseconds(30), none).failure().kind,
+  EXPECT_EQ(receiver->receive_or_measure(milliseconds(30), none, 1).failure().kind,
             Failure::Kind::kInvalid);
+}
+
+TEST_F(RadioOfVehicle, ReceivesWhatElseHasArrived) {
+  incoming_ = {"autopilot", from_ns<SimTime>(5), from_ns<SimTime>(6), {9}};
+  more_ = {{"autopilot", from_ns<SimTime>(5), from_ns<SimTime>(6), {8}}};
+  const auto receiver = vehicle();
+  const auto both = receiver->receive_or_measure(milliseconds(3), {}, 7);
+  ASSERT_TRUE(both);
+  ASSERT_THAT(*both, testing::SizeIs(2));
+  EXPECT_THAT(both->at(0).bytes, testing::ElementsAre(9));
+  EXPECT_THAT(both->at(1).bytes, testing::ElementsAre(8));
+  EXPECT_EQ(std::get<link::ReceiveMessage>(coordinator_->requests().at(0).body).most, 7U);
+  more_[0].arrived_at = from_ns<SimTime>(60'000'000);
+  EXPECT_EQ(receiver->receive_or_measure(milliseconds(3), {}, 7).failure().kind,
+            Failure::Kind::kProtocol);
 }
 
 TEST_F(RadioOfVehicle, SkipsWhatASensorHas) {

@@ -130,12 +130,17 @@ struct SendMessage {
   std::string to;  ///< a UAV, or kAutopilot; empty: all other UAVs
   std::vector<std::uint8_t> bytes;
 };
+/// Most messages that one call receives.
+inline constexpr std::uint32_t kMaxReceived = 64;
 /// Wait for the next message, until `timeout` after the request at most.
 struct ReceiveMessage {
   Duration timeout{0};  ///< 0: of those that have arrived
   /// And at most until one of these periodic sensors has a measurement that was not read. It is
   /// read by a request of its own.
   std::vector<std::uint32_t> sensors{};
+  /// Of a serial SUT, if it is one of the flight controller: also those of it that come next and
+  /// have arrived by the reply, at most so many in all.
+  std::uint32_t most = 1;
 };
 /// Read the battery, if the catalogue has one. The reply is due at once.
 struct ReadBattery {};
@@ -173,6 +178,7 @@ struct Reply {
   std::vector<StageTime> computing{};
   std::optional<RadioMessage> message{};        ///< of ReceiveMessage; none: none arrived in time
   std::optional<uav::BatterySample> battery{};  ///< of ReadBattery
+  std::vector<RadioMessage> more{};             ///< after `message`, in order
 };
 
 /// Coordinator → concurrent SUT under the barrier, as soon as a request has arrived: the time at

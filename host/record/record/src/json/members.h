@@ -108,6 +108,7 @@ void members(auto& io, Maybe<Interaction> auto& m) {
   io.optional("receive_until_ns", m.receive_until);
   if (io.has("received", m.received.has_value()))
     io.object("received", [&](auto& received) { members(received, io.value_of(m.received)); });
+  if (io.has("received_more", m.received_more > 0)) io("received_more", m.received_more);
   if (io.has("battery", m.battery.has_value()))
     io.object("battery", [&](auto& battery) { members(battery, io.value_of(m.battery)); });
   if (io.arrivals()) {

@@ -92,6 +92,7 @@ const Schema kInteractionSchema{"tether.Interaction", R"json({
       },
       "required": ["from", "sequence", "arrived_at_ns"]
     },
+    "received_more": {"type": "integer", "description": "messages of the flight controller that came next, and were received with it"},
     "battery": {
       "type": "object",
       "description": "what was read of the battery, at st_at_release",

@@ -110,10 +110,11 @@ class Vehicle {
   /// arrived by the timeout.
   virtual Result<RadioMessage> receive(Duration timeout);
   /// The same, but it also ends, with nothing, when one of these periodic sensors has a measurement
-  /// that was not read: at once, if there is one already. Fails as well with kInvalid if one is no
-  /// periodic sensor of the UAV, or if the vehicle is not simulated.
-  virtual Result<std::optional<RadioMessage>> receive_or_measure(
-      Duration timeout, std::span<const std::string_view> sensors);
+  /// that was not read: at once, if there is one already. After a message of the flight controller,
+  /// the next ones that have arrived, at most `most` in all. Fails as well with kInvalid if one is
+  /// no periodic sensor of the UAV, or if the vehicle is not simulated.
+  virtual Result<std::vector<RadioMessage>> receive_or_measure(
+      Duration timeout, std::span<const std::string_view> sensors, std::uint32_t most);
 
   /// Writes a message into the record, without waiting for the coordinator. With a serial vehicle
   /// it takes no ET, but can wait for another thread's call. `json` is one JSON object.

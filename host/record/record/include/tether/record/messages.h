@@ -136,6 +136,7 @@ struct Interaction {
   // For kind "receive".
   std::optional<ExecTime> receive_until{};    ///< request_at + timeout, or when a sensor is ready
   std::optional<ReceivedMessage> received{};  ///< none: no message had arrived by then
+  std::uint64_t received_more = 0;            ///< of the flight controller, the next ones in order
 
   std::optional<BatteryReading> battery{};  ///< kind "battery": at st_at_release
 
