@@ -34,6 +34,8 @@ constexpr Duration kLongestUnwoken = std::chrono::milliseconds(1);
 constexpr Duration kLongestToldSlice = std::chrono::milliseconds(200);
 // A thread that waits beside one that computes looks so often for what has arrived [ET].
 constexpr Duration kBetweenLooks = std::chrono::milliseconds(2);
+// Messages that it takes at once: a serial port has little room.
+constexpr std::uint32_t kTogether = 16;
 // Of a wait without a deadline; then it begins again.
 constexpr Duration kForEver = std::chrono::hours(1);
 
@@ -79,7 +81,7 @@ bool Agent::receive_until(std::optional<ExecTime> until) {
   if (port_.has_receiver()) sensors.push_back(receiver_);
   const Duration timeout = until ? std::max(Duration(0), *until - now()) : kForEver;
   const auto received =
-      Unpaid::in_call([&] { return vehicle_->receive_or_measure(timeout, sensors, 1); });
+      Unpaid::in_call([&] { return vehicle_->receive_or_measure(timeout, sensors, kTogether); });
   if (!received && received.failure().kind != Failure::Kind::kNothingYet) end(received.failure());
   if (!received) return false;
   if (received->empty()) take_measured();

@@ -192,7 +192,7 @@ class Agent {
     ToldNeeds& operator=(const ToldNeeds&) = delete;
     Agent& agent_;
   };
-  /// Takes the next message, or lets ET reach that instant.
+  /// Takes the next messages, or lets ET reach that instant.
   bool receive_until(std::optional<ExecTime> until);
   void tell_if_idle();
   void tell_if_beside();
