@@ -3,6 +3,7 @@
 // those that were lost are at the instant of sending.
 
 #include "checks.h"
+#include "suts.h"
 
 #include <algorithm>
 #include <cmath>
@@ -26,27 +27,27 @@ const std::set<std::string> kLineOutcomes = {"delivered", "queue_full", "inbox_f
 
 class AutopilotCheck {
  public:
-  AutopilotCheck(const record::Record& record, const record::SutInfo& sut, Report& report)
-      : record_(record), sut_(sut), controller_(*sut.controller), report_(report) {
-    for (const auto& entry : record.interactions)
-      if (entry.message.uav == sut.uav && entry.message.kind == record::kSend)
-        sends_[entry.message.sequence] = entry.message.request_at;
+  AutopilotCheck(const record::Record& record, const SutRow& row,
+                 const record::ControllerInfo& controller, Report& report)
+      : record_(record), row_(row), controller_(controller), report_(report) {
+    for (const auto* entry : row.interactions)
+      if (entry->message.kind == record::kSend)
+        sends_[entry->message.sequence] = entry->message.request_at;
   }
 
   void run() {
     for (const bool to_controller : {true, false}) {
       std::vector<const LineEntry*> line;
-      for (const LineEntry& entry : record_.autopilot)
-        if (entry.message.uav == sut_.uav && !entry.message.of_station &&
-            entry.message.to_controller == to_controller)
-          line.push_back(&entry);
+      for (const LineEntry* entry : row_.autopilot)
+        if (!entry->message.of_station && entry->message.to_controller == to_controller)
+          line.push_back(entry);
       std::ranges::stable_sort(line, {}, [](const LineEntry* entry) {
         return std::pair(entry->message.sequence, entry->message.part);
       });
       check_line(line);
     }
-    for (const LineEntry& entry : record_.autopilot)
-      if (entry.message.uav == sut_.uav && entry.message.of_station) check_station(entry);
+    for (const LineEntry* entry : row_.autopilot)
+      if (entry->message.of_station) check_station(*entry);
   }
 
  private:
@@ -154,7 +155,7 @@ class AutopilotCheck {
   }
 
   const record::Record& record_;
-  const record::SutInfo& sut_;
+  const SutRow& row_;
   const record::ControllerInfo& controller_;
   Report& report_;
   std::map<std::uint64_t, ExecTime> sends_;
@@ -164,13 +165,14 @@ class AutopilotCheck {
 
 void check_autopilot(const record::Record& record, Report& report) {
   std::set<std::string> with_controllers;
+  const auto rows = rows_of(record);
   for (const record::SutInfo& sut : record.header.suts) {
     if (!sut.controller) continue;
     with_controllers.insert(sut.uav);
     if (sut.controller->period <= Duration(0))
       report.add("the period of the flight controller of UAV \"" + sut.uav + "\" is not positive");
     else
-      AutopilotCheck(record, sut, report).run();
+      AutopilotCheck(record, rows.at(sut.uav), *sut.controller, report).run();
   }
   for (const LineEntry& entry : record.autopilot)
     if (!with_controllers.contains(entry.message.uav))

@@ -66,8 +66,9 @@ class RadioCheck {
   void check_receives() {
     for (const auto& [uav, row] : rows_of(record_)) {
       std::deque<Inboxed> inbox;
-      for (const auto& [at, order, m] : record_.autopilot)
-        if (m.uav == uav && m.of_controller() && m.part == 0 && m.outcome == record::kDelivered)
+      for (const auto* entry : row.autopilot)
+        if (const auto& m = entry->message;
+            m.of_controller() && m.part == 0 && m.outcome == record::kDelivered)
           inbox.push_back({kAutopilot, m.sequence, m.at, indices_[uav]});
       for (const auto& [at, order, m] : record_.radio)
         if (m.to == uav && m.outcome == record::kDelivered)

@@ -11,8 +11,9 @@ namespace tether::audit {
 /// One SUT of the header with its messages.
 struct SutRow {
   const record::SutInfo* info = nullptr;
-  std::vector<const record::Logged<record::Interaction>*> interactions;  ///< in file order
-  std::vector<const record::Logged<record::Stop>*> stops;                ///< in file order
+  std::vector<const record::Logged<record::Interaction>*> interactions;    ///< in file order
+  std::vector<const record::Logged<record::Stop>*> stops;                  ///< in file order
+  std::vector<const record::Logged<record::AutopilotMessage>*> autopilot;  ///< in file order
 };
 
 /// By UAV. Messages of other UAVs are left out: check_consistency reports them.
@@ -27,6 +28,7 @@ inline std::map<std::string, SutRow> rows_of(const record::Record& record) {
   };
   add_all(record.interactions, &SutRow::interactions);
   add_all(record.stops, &SutRow::stops);
+  add_all(record.autopilot, &SutRow::autopilot);
   return rows;
 }
 
