@@ -15,6 +15,7 @@
 #include <pthread.h>
 #include <semaphore.h>
 #include <sys/syscall.h>
+#include <threads.h>
 #include <unistd.h>
 
 namespace tether::as_is {
@@ -136,6 +137,11 @@ long wait_for_futex(Agent& agent, long word, long operation, long value, const t
   return result == 0 ? 0 : -1;
 }
 
+/// Of C11.
+int thread_result(int error) {
+  return error == 0 ? thrd_success : error == ETIMEDOUT ? thrd_timedout : thrd_error;
+}
+
 bool is_timed_wait(long operation) {
   const long command = operation & FUTEX_CMD_MASK;
   return command == FUTEX_WAIT || command == FUTEX_WAIT_BITSET;
@@ -234,6 +240,19 @@ TETHER_IN_PLACE int pthread_mutex_clocklock(pthread_mutex_t* mutex, clockid_t cl
 TETHER_IN_PLACE int pthread_mutex_timedlock(pthread_mutex_t* __restrict mutex,
                                             const timespec* __restrict until) {
   return pthread_mutex_clocklock(mutex, CLOCK_REALTIME, until);
+}
+
+// In glibc, those of C11 are POSIX' own.
+static_assert(sizeof(cnd_t) == sizeof(pthread_cond_t) && sizeof(mtx_t) == sizeof(pthread_mutex_t));
+
+TETHER_IN_PLACE int cnd_timedwait(cnd_t* __restrict condition, mtx_t* __restrict mutex,
+                                  const timespec* __restrict until) {
+  return thread_result(pthread_cond_timedwait(reinterpret_cast<pthread_cond_t*>(condition),
+                                              reinterpret_cast<pthread_mutex_t*>(mutex), until));
+}
+
+TETHER_IN_PLACE int mtx_timedlock(mtx_t* __restrict mutex, const timespec* __restrict until) {
+  return thread_result(pthread_mutex_timedlock(reinterpret_cast<pthread_mutex_t*>(mutex), until));
 }
 
 TETHER_IN_PLACE int sem_timedwait(sem_t* __restrict semaphore, const timespec* __restrict until) {

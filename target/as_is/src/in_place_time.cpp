@@ -80,6 +80,16 @@ TETHER_IN_PLACE int clock_nanosleep(clockid_t clock, int flags, const timespec* 
   return agent->sleep_until(et_of(clock, *until)) ? 0 : EINTR;
 }
 
+// The C library's own functions of C11 do not call those above.
+TETHER_IN_PLACE int timespec_get(timespec* time, int base) {
+  return base == TIME_UTC && clock_gettime(CLOCK_REALTIME, time) == 0 ? base : 0;
+}
+
+TETHER_IN_PLACE int thrd_sleep(const timespec* duration, timespec* left) {
+  if (nanosleep(duration, left) == 0) return 0;
+  return errno == EINTR ? -1 : -2;
+}
+
 TETHER_IN_PLACE int usleep(useconds_t duration_us) {
   if (agent() == nullptr) return TETHER_REAL(usleep)(duration_us);
   const timespec time = to_timespec(std::chrono::microseconds(duration_us));

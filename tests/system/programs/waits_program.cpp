@@ -22,6 +22,7 @@
 #include <sys/syscall.h>
 #include <sys/time.h>
 #include <sys/timerfd.h>
+#include <threads.h>
 #include <unistd.h>
 
 namespace {
@@ -179,6 +180,20 @@ int main() {
   take("sem_clockwait", [&] {
     const timespec until = later(CLOCK_MONOTONIC);
     sem_clockwait(&semaphore, CLOCK_MONOTONIC, &until);
+  });
+
+  take("thrd_sleep", [&] { thrd_sleep(&duration, nullptr); });
+  cnd_t woken;
+  mtx_t held;
+  cnd_init(&woken);
+  mtx_init(&held, mtx_timed);
+  mtx_lock(&held);
+  take("cnd_timedwait", [&] {
+    timespec until{};
+    timespec_get(&until, TIME_UTC);
+    until.tv_sec += (until.tv_nsec + kWait_ns) / 1'000'000'000;
+    until.tv_nsec = (until.tv_nsec + kWait_ns) % 1'000'000'000;
+    cnd_timedwait(&woken, &held, &until);
   });
 
   take("sleep_for", [] { std::this_thread::sleep_for(20ms); });

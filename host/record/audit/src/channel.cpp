@@ -296,7 +296,8 @@ class ChannelCheck {
     std::map<std::string, std::vector<Wide>> received;  // by receiver: when
     std::map<std::string, SimTime> left;                // nothing comes into its inbox any more
     for (const auto& entry : record_.interactions) {
-      if (entry.message.received)
+      // What comes from the flight controller waits elsewhere.
+      if (entry.message.received && entry.message.received->from != kAutopilot)
         received[entry.message.uav].push_back(wide(entry.message.reply_at));
       if (entry.message.kind == record::kFinish) left.try_emplace(entry.message.uav, entry.at);
     }

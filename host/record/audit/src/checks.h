@@ -8,6 +8,9 @@
 /// The parts of the audit. Each reads the whole record and is independent of the others.
 namespace tether::audit {
 
+/// As whose messages SUTs receive those of their flight controllers.
+inline constexpr const char* kAutopilot = "autopilot";
+
 /// Rules 1 to 7 for each interaction alone.
 void check_interactions(const record::Record& record, const Boundaries& grid, Report& report);
 

@@ -17,8 +17,6 @@ using Entry = record::Logged<record::Interaction>;
 using Fate = record::Logged<record::RadioMessage>;
 using record::RadioMessage;
 
-constexpr const char* kAutopilot = "autopilot";  // as senders of SUTs see it
-
 /// A message that a SUT can receive.
 struct Inboxed {
   std::string from;

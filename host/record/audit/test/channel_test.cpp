@@ -110,6 +110,12 @@ TEST(AuditOfTheChannel, CountsInboxes) {
   EXPECT_EQ(channel_findings(record), 1u);
   second.outcome = "inbox_full";
   EXPECT_EQ(channel_findings(record), 0u);
+  record::Interaction& heard = record.interactions.emplace_back().message;
+  heard.uav = second.to;
+  heard.received = {"autopilot", 1, {}};
+  EXPECT_EQ(channel_findings(record), 0u)
+      << "what comes from the flight controller waits elsewhere";
+  record.interactions.clear();
   record.header.radio.inbox_messages = 2;
   EXPECT_EQ(channel_findings(record), 1u);
 }
