@@ -1,5 +1,5 @@
 #include "convert/sdf_convert.h"
-#include "files/file_kind.h"
+#include "files/lookups.h"
 #include "files/material_script.h"
 
 #include <set>
@@ -53,13 +53,8 @@ ScriptPlaces places_of(const SdfSource& source, const sdf::ElementPtr& script) {
     places.folders.push_back(folder);
     places.folders.push_back(folder.parent_path() / "textures");
     if (is_one) continue;
-    std::set<fs::path> in_order;
-    std::error_code error;
-    for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
-         entry.increment(error))
-      if (extension_of(entry->path()) == ".material" && is_file(entry->path()))
-        in_order.insert(entry->path());
-    places.scripts.insert(places.scripts.end(), in_order.begin(), in_order.end());
+    for (const fs::path& entry : entries_of(folder))
+      if (extension_of(entry) == ".material" && is_file(entry)) places.scripts.push_back(entry);
   }
   return places;
 }

@@ -2,7 +2,7 @@
 
 #include "files/mesh_companions.h"
 
-#include "files/file_kind.h"
+#include "files/lookups.h"
 
 #include <algorithm>
 #include <set>
@@ -10,7 +10,6 @@
 #include <string_view>
 
 #include <tether/base/text.h>
-#include <tether/os/text_file.h>
 
 namespace tether::sim {
 
@@ -26,15 +25,6 @@ std::string without_blanks(const std::string& name) {
   std::string uri;
   for (const char c : name) uri += c == ' ' ? "%20" : std::string(1, c);
   return uri;
-}
-
-std::set<fs::path> entries_of(const fs::path& folder) {
-  std::set<fs::path> entries;
-  std::error_code error;
-  for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
-       entry.increment(error))
-    entries.insert(entry->path());
-  return entries;
 }
 
 std::vector<fs::path> folders_around(const fs::path& mesh) {
@@ -72,10 +62,10 @@ std::vector<fs::path> mesh_companions(const fs::path& mesh) {
   std::vector<fs::path> found;
   if (lower_case(mesh.extension().string()) == ".stl") return found;  // names no files
   const std::vector<fs::path> folders = folders_around(mesh);
-  add_named(lower_case(os::read_file(mesh, kLargestMesh)), folders, found);
+  add_named(lower_case(read_file(mesh, kLargestMesh)), folders, found);
   for (std::size_t i = 0; i < found.size(); ++i)
     if (lower_case(found[i].extension().string()) == ".mtl")
-      add_named(lower_case(os::read_file(found[i], kLargestMesh)), folders, found);
+      add_named(lower_case(read_file(found[i], kLargestMesh)), folders, found);
   return found;
 }
 

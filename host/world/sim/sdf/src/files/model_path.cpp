@@ -3,13 +3,13 @@
 
 #include "files/model_path.h"
 
-#include "files/file_kind.h"
+#include "files/lookups.h"
 #include "files/sdf_version_number.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cstdlib>
-#include <set>
 #include <sstream>
 #include <string_view>
 
@@ -25,6 +25,10 @@ namespace {
 
 constexpr const char* kWithout =
     ". To fly without it, leave out --strict (in a UAV's model: use --tolerant)";
+
+constexpr std::array kModelVariables = {"GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH",
+                                        "GAZEBO_MODEL_PATH", "SDF_PATH"};
+constexpr std::array kFuelVariables = {"GZ_FUEL_CACHE_PATH", "IGN_FUEL_CACHE_PATH"};
 
 std::string variable(const char* name) {
   const char* value = std::getenv(name);
@@ -55,15 +59,11 @@ std::string fuel_name(const std::string& text) {
 }
 
 /// The subfolders of that name, in order; all of them if the name is empty.
-std::set<fs::path> subfolders(const fs::path& folder, const std::string& name) {
-  std::set<fs::path> found;
-  std::error_code error;
-  for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
-       entry.increment(error)) {
-    const fs::path path = entry->path();
-    if (is_folder(path) && (name.empty() || fuel_name(path.filename()) == fuel_name(name)))
-      found.insert(path);
-  }
+std::vector<fs::path> subfolders(const fs::path& folder, const std::string& name) {
+  std::vector<fs::path> found = entries_of(folder);
+  std::erase_if(found, [&](const fs::path& path) {
+    return !is_folder(path) || (!name.empty() && fuel_name(path.filename()) != fuel_name(name));
+  });
   return found;
 }
 
@@ -137,11 +137,7 @@ std::optional<fs::path> first_existing(const std::vector<fs::path>& folders,
 /// The name beside `missing` that is most like its own; empty: none is.
 std::string similar(const fs::path& missing) {
   std::vector<std::string> names;
-  std::error_code error;
-  for (fs::directory_iterator entry(missing.parent_path(), error), end; !error && entry != end;
-       entry.increment(error))
-    names.push_back(entry->path().filename());
-  std::ranges::sort(names);
+  for (const fs::path& entry : entries_of(missing.parent_path())) names.push_back(entry.filename());
   return std::string(nearest(missing.filename().string(),
                              std::vector<std::string_view>(names.begin(), names.end())));
 }
@@ -164,17 +160,23 @@ std::string nearest_in(const fs::path& folder, const fs::path& path) {
 
 ModelPath::ModelPath(const fs::path& world, const std::vector<fs::path>& model_folders)
     : world_(world) {
-  for (const char* name :
-       {"GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH", "GAZEBO_MODEL_PATH", "SDF_PATH"}) {
+  for (const char* name : kModelVariables) {
     for (std::string& folder : split(variable(name), ':')) model_folders_.emplace_back(folder);
   }
   model_folders_.insert(model_folders_.end(), model_folders.begin(), model_folders.end());
-  for (const char* name : {"GZ_FUEL_CACHE_PATH", "IGN_FUEL_CACHE_PATH"})
+  for (const char* name : kFuelVariables)
     if (const std::string cache = variable(name); !cache.empty()) fuel_caches_.emplace_back(cache);
   if (const fs::path home = variable("HOME"); !home.empty()) {
     fuel_caches_.push_back(home / ".gz/fuel");
     fuel_caches_.push_back(home / ".ignition/fuel");
   }
+}
+
+std::string ModelPath::environment() {
+  std::string all = variable("HOME");
+  for (const char* name : kModelVariables) all += '\n' + variable(name);
+  for (const char* name : kFuelVariables) all += '\n' + variable(name);
+  return all;
 }
 
 std::optional<fs::path> ModelPath::find(const std::string& uri, const fs::path& from) const {
@@ -240,6 +242,7 @@ fs::path sdf_file_of(const fs::path& model_folder, const std::string& latest_ver
   const auto latest = parse_sdf_version(latest_version.c_str());
   tinyxml2::XMLDocument config;
   for (const char* name : {"model.config", "manifest.xml"}) {
+    note_file(model_folder / name);
     if (config.LoadFile((model_folder / name).c_str()) == tinyxml2::XML_SUCCESS) break;
   }
   const auto* model = config.FirstChildElement("model");

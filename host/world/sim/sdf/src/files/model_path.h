@@ -15,6 +15,9 @@ class ModelPath {
   ModelPath(const std::filesystem::path& world,
             const std::vector<std::filesystem::path>& model_folders);
 
+  /// What of the environment decides where URIs lead.
+  static std::string environment();
+
   /// The file or folder that `uri` means in the file `from`; none if there is nothing.
   ///
   /// A path is relative to `from`, else to the world, the folder above it, the environment's

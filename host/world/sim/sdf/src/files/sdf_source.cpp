@@ -4,7 +4,7 @@
 
 #include "files/sdf_source.h"
 
-#include "files/file_kind.h"
+#include "files/lookups.h"
 #include "files/mesh_companions.h"
 #include "files/quiet_console.h"
 #include "files/sdf_numbers.h"
@@ -339,7 +339,7 @@ fs::path SdfSource::use(const fs::path& file) const {
 }
 
 std::string SdfSource::read_resource(const fs::path& file) const {
-  return os::read_file(use(file), kLargestResource);
+  return sim::read_file(use(file), kLargestResource);
 }
 
 const std::vector<fs::path>& SdfSource::companions_of(const fs::path& mesh) const {

@@ -3,7 +3,7 @@
 
 #include "files/sdf_stage.h"
 
-#include "files/file_kind.h"
+#include "files/lookups.h"
 #include "files/sdf_numbers.h"
 #include "files/sdf_repair.h"
 #include "files/sdf_version_number.h"
@@ -120,18 +120,14 @@ void add_link(XMLElement& model, const std::string& name) {
 
 /// What to do about a model's folder that has only the source of its SDF file.
 std::string advice_on_source(const fs::path& folder) {
-  std::set<std::string> sources;
-  std::error_code error;
-  for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
-       entry.increment(error)) {
-    const std::string type = entry->path().extension();
+  for (const fs::path& source : entries_of(folder)) {
+    const std::string type = source.extension();
     if (type == ".jinja" || type == ".xacro" || type == ".erb" || type == ".rsdf")
-      sources.insert(entry->path().filename());
+      return "; it is generated from '" + source.filename().string() +
+             "': build the project that the model is from, or expand the file by its tool "
+             "(jinja2, xacro, erb)";
   }
-  if (sources.empty()) return "";
-  return "; it is generated from '" + *sources.begin() +
-         "': build the project that the model is from, or expand the file by its tool (jinja2, "
-         "xacro, erb)";
+  return "";
 }
 
 /// What an included model is called if its file is not there to say.

@@ -1,6 +1,6 @@
 #include "files/sdf_xml.h"
 
-#include "files/file_kind.h"
+#include "files/lookups.h"
 #include "files/urdf.h"
 
 #include <algorithm>
@@ -9,7 +9,6 @@
 #include <string_view>
 
 #include <tether/base/error.h>
-#include <tether/os/text_file.h>
 
 namespace tether::sim {
 namespace {
@@ -114,7 +113,7 @@ std::unique_ptr<XMLDocument> read_xml(const fs::path& file) {
   if (is_folder(file))
     refuse_file(file, 0, "is a directory; give the SDF file in it, such as model.sdf");
   if (!is_file(file)) refuse_file(file, 0, "there is no such file");
-  const std::string text = os::read_file(file, kLargestFile);
+  const std::string text = read_file(file, kLargestFile);
   require_utf8(file, text);
   auto document = std::make_unique<XMLDocument>();
   document->Parse(text.data(), text.size());

@@ -1,8 +1,12 @@
 #pragma once
 
+#include <chrono>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include <tether/sim/file_cache.h>
 #include <tether/sim/world.h>
 
 namespace tether::sim {
@@ -52,8 +56,15 @@ void check_sdf_version(const World& world, const SdfReader& reader);
 /// once. Not thread-safe.
 class WorldStore {
  public:
-  /// As load_world, with the same warnings. Does not notice that a file has changed since it was
-  /// read.
+  /// Finds worlds also in a cache, and keeps those there that it reads. None: reads them. A world
+  /// with a file that changed less than `tick` ago is not kept: another change may not show in the
+  /// file's times.
+  explicit WorldStore(std::optional<FileCache> cache = std::nullopt,
+                      Duration tick = std::chrono::seconds(2))
+      : cache_(std::move(cache)), tick_(tick) {}
+
+  /// As load_world, with the same warnings. Does not notice that a file has changed since the store
+  /// has the world. From the cache, a world is what reading it would give now.
   World load(const WorldRequest& request, const WarningSink& warn);
 
  private:
@@ -63,7 +74,10 @@ class WorldStore {
     std::vector<Warning> warnings;
   };
   const Stored& find(const WorldRequest& request);
+  Stored make(const WorldRequest& request) const;
 
+  std::optional<FileCache> cache_;
+  Duration tick_;
   std::vector<Stored> stored_;
 };
 
