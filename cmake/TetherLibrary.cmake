@@ -173,7 +173,8 @@ function(_tether_add_test_entry target entry filter labels timeout cost)
   endif()
   add_test(NAME ${entry} COMMAND ${target} --gtest_brief=1
     "--gtest_output=xml:${PROJECT_BINARY_DIR}/test-results/${entry}.xml" ${options})
-  set_tests_properties(${entry} PROPERTIES LABELS "${labels}" TIMEOUT ${timeout} COST ${cost})
+  set_tests_properties(${entry} PROPERTIES LABELS "${labels}" TIMEOUT ${timeout} COST ${cost}
+    ENVIRONMENT "TETHER_CACHE=${PROJECT_BINARY_DIR}/world-cache")
 endfunction()
 
 # tether_add_library(<name> SOURCES ... [PUBLIC ...] [PRIVATE ...] [TESTS ...] [TEST_LIBS ...]

@@ -22,7 +22,7 @@ void open_standard_streams() {
 }
 
 int serve_trials() {
-  tether::sim::WorldStore worlds;
+  tether::sim::WorldStore worlds(tether::sim::FileCache::of_user());
   return tether::runner::serve_trials(tether::app::trial_service(worlds));
 }
 

@@ -214,7 +214,7 @@ int run_trials(const CampaignOptions& options, const std::stop_token& stop) {
                     : options.resume       ? campaign::OpenMode::kResume
                                            : campaign::OpenMode::kFresh;
   campaign::require_folder(out, campaign, mode);
-  sim::WorldStore worlds;
+  sim::WorldStore worlds(sim::FileCache::of_user());
   const auto [files, warnings] = runner::files_of_trials(campaign, find_back_end, worlds);
   if (!warnings.empty())
     complain(summary_of(warnings, std::string(runner::kWarningsFile) + " of each trial"));

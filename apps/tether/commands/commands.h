@@ -42,6 +42,7 @@ Command plot_command();
 Command world_check_command();
 Command model_check_command();
 Command target_check_command();
+Command cache_command();
 Command list_command();
 
 /// Brings the results of folders of one campaign together in the first one, and prints them.

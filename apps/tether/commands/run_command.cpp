@@ -28,6 +28,7 @@
 #include <tether/runner/trial_request.h>
 #include <tether/scenario/scenario.h>
 #include <tether/scenario/shipped_files.h>
+#include <tether/sim_sdf/load_world.h>
 
 /// `tether run`: makes a request of the options, runs its trial with the status on stderr, and
 /// prints the result.
@@ -88,7 +89,9 @@ runner::TrialRequest make_request(const RunOptions& options,
 
 int run_and_print(const RunOptions& options, const runner::TrialRequest& request,
                   const std::stop_token& stop) {
-  const runner::TrialSpec spec = runner::make_trial(request);
+  sim::WorldStore worlds(sim::FileCache::of_user());
+  runner::TrialSpec spec = runner::make_trial(request);
+  spec.worlds = &worlds;
   campaign::TrialResult result;
   {
     StatusLine line;

@@ -95,7 +95,7 @@ SizeTrials::SizeTrials(const SizeOptions& options, SizeAxis& axis, const std::fi
 std::vector<std::filesystem::path> SizeTrials::checked_files(const std::filesystem::path& out) {
   campaign::require_folder(out, campaign_, open_mode(options_));
   require_parallel_allowed(campaign_, engine_, jobs_);
-  sim::WorldStore worlds;
+  sim::WorldStore worlds(sim::FileCache::of_user());
   const auto [files, warnings] = runner::files_of_trials(campaign_, find_back_end, worlds);
   if (!warnings.empty())
     complain(summary_of(warnings, std::string(runner::kWarningsFile) + " of each flight"));

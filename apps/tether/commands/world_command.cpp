@@ -28,12 +28,12 @@ int check_world(const WorldCheckOptions& options, const std::stop_token&) {
   const auto shipped = scenario::ShippedFiles::of_program(os::own_file());
   std::vector<Warning> warnings;
   const auto collect = [&](const Warning& warning) { warnings.push_back(warning); };
-  sim::World world =
-      sim::load_world({.world = shipped.find(scenario::ShippedKind::kWorld, options.world),
-                       .uavs = {},
-                       .anchors = {},
-                       .options = world_options(options.reading, shipped)},
-                      collect);
+  sim::World world = sim::WorldStore(sim::FileCache::of_user())
+                         .load({.world = shipped.find(scenario::ShippedKind::kWorld, options.world),
+                                .uavs = {},
+                                .anchors = {},
+                                .options = world_options(options.reading, shipped)},
+                               collect);
   const std::string file = world.file.string();
   const auto models = world.models.size(), lights = world.lights.size();
   const std::string step =

@@ -65,6 +65,7 @@ std::vector<Command> commands() {
        {},
        "Examples:\n  tether target check ssh://pi@board.local"},
       target_check_command(),
+      cache_command(),
       list_command()};
 }
 
