@@ -76,8 +76,8 @@ std::vector<std::filesystem::path> no_files() {
 runner::BackEnd embedded() {
   const auto prepare = [](sim::World world, const sim::WarningSink& warn) -> StartSimulator {
     sim::check_step(world, sim::Controller::kOurs, warn);
-    return [make = sim::prepare_mujoco_simulator(std::move(world), warn)](
-               const SimulatorSetup& setup) {
+    return [make = sim::prepare_mujoco_simulator(
+                std::move(world), warn, sim::FileCache::of_user())](const SimulatorSetup& setup) {
       return std::make_unique<WithoutProcesses>(make(setup.warn, setup.threads_ahead));
     };
   };

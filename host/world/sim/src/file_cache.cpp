@@ -1,10 +1,12 @@
 // An entry is a file: a header, its key, and from a multiple of 64 bytes on its content. It is
 // written beside its place and renamed, and read by mapping it.
 
-#include <array>
+#include <algorithm>
 #include <cerrno>
+#include <cstddef>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -28,16 +30,21 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::string_view kEntrySuffix = ".entry";
+constexpr std::size_t kAlignment = 64;
+constexpr std::size_t kMostParts = 16;
 
 struct Header {
   std::array<char, 8> magic{'T', 'E', 'T', 'H', 'E', 'R', 'C', '1'};
+  std::uint64_t checksum = 0;  // of all that follows, the key and the checked parts
   std::uint64_t key_bytes = 0;
-  std::uint64_t bytes = 0;
-  std::uint64_t checked_bytes = 0;
-  std::uint64_t checksum = 0;  // of the key and what is checked
-
-  std::size_t content_at() const { return (sizeof(Header) + key_bytes + 63) / 64 * 64; }
+  std::uint64_t checked = 0;
+  std::uint64_t parts = 0;
+  std::array<std::uint64_t, kMostParts> part_bytes{};
 };
+
+std::size_t aligned(std::size_t bytes) {
+  return (bytes + kAlignment - 1) / kAlignment * kAlignment;
+}
 
 // FNV-1a by words of eight bytes; the last one is filled up with zeros.
 std::uint64_t checksum(std::string_view bytes, std::uint64_t hash = 0xcbf29ce484222325U) {
@@ -47,6 +54,15 @@ std::uint64_t checksum(std::string_view bytes, std::uint64_t hash = 0xcbf29ce484
     hash = (hash ^ word) * 0x100000001b3U;
     hash ^= hash >> 32U;
   }
+  return hash;
+}
+
+std::uint64_t checksum_of(const Header& header, std::string_view key,
+                          std::span<const std::string_view> parts) {
+  const std::size_t own = offsetof(Header, key_bytes);
+  const std::string_view bytes(reinterpret_cast<const char*>(&header), sizeof header);
+  std::uint64_t hash = checksum(key, checksum(bytes.substr(own)));
+  for (const std::string_view part : parts.first(header.checked)) hash = checksum(part, hash);
   return hash;
 }
 
@@ -67,20 +83,25 @@ class Mapping {
   Mapping(const Mapping&) = delete;
   Mapping& operator=(const Mapping&) = delete;
 
-  // None: the file is no entry of the key, or damaged.
-  std::optional<std::string_view> content_of(std::string_view key) const {
+  // Empty: the file is no entry of the key, or damaged.
+  std::vector<std::string_view> parts_of(std::string_view key) const {
     Header header;
-    if (bytes_.size() < sizeof header) return std::nullopt;
+    if (bytes_.size() < sizeof header) return {};
     std::memcpy(&header, bytes_.data(), sizeof header);
     if (header.magic != Header().magic || header.key_bytes != key.size() ||
-        bytes_.size() < header.content_at() || header.checked_bytes > header.bytes ||
-        bytes_.size() - header.content_at() != header.bytes ||
+        header.parts > kMostParts || header.checked > header.parts ||
         bytes_.substr(sizeof header, key.size()) != key)
-      return std::nullopt;
-    const std::string_view content = bytes_.substr(header.content_at());
-    if (checksum(content.substr(0, header.checked_bytes), checksum(key)) != header.checksum)
-      return std::nullopt;
-    return content;
+      return {};
+    std::vector<std::string_view> parts;
+    std::size_t at = aligned(sizeof header + key.size());
+    for (std::size_t i = 0; i < header.parts; ++i) {
+      const std::size_t size = header.part_bytes[i];
+      if (at > bytes_.size() || size > bytes_.size() - at) return {};
+      parts.push_back(bytes_.substr(at, size));
+      at = aligned(at + size);
+    }
+    const bool is_whole = at == bytes_.size() && checksum_of(header, key, parts) == header.checksum;
+    return is_whole ? parts : std::vector<std::string_view>();
   }
 
  private:
@@ -98,20 +119,25 @@ void for_each_file(const fs::path& folder, Visit visit) {
   }
 }
 
-// @return an error number; 0: none
-int write_entry(const fs::path& file, std::initializer_list<std::string_view> head,
-                std::span<const std::string_view> parts) {
+// Each part begins at a multiple of the alignment. @return an error number; 0: none
+int write_aligned(const fs::path& file, std::span<const std::string_view> parts) {
+  constexpr std::array<char, kAlignment> kPadding{};
   std::string beside = file.string() + "-XXXXXX" + std::string(os::kPartSuffix);
   const os::FileDescriptor fd(
       ::mkostemps(beside.data(), static_cast<int>(os::kPartSuffix.size()), O_CLOEXEC));
   if (!fd) return errno;
   bool is_written = true;
-  for (const std::string_view part : head) is_written = is_written && os::write_all(fd, part);
-  for (const std::string_view part : parts) is_written = is_written && os::write_all(fd, part);
+  for (const std::string_view part : parts)
+    is_written = is_written && os::write_all(fd, part) &&
+                 os::write_all(fd, {kPadding.data(), aligned(part.size()) - part.size()});
   if (is_written && ::fsync(fd.get()) == 0 && ::rename(beside.c_str(), file.c_str()) == 0) return 0;
   const int reason = errno;
   ::unlink(beside.c_str());
   return reason;
+}
+
+std::int64_t nanoseconds(const timespec& time) {
+  return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
 }
 
 std::string variable(const char* name) {
@@ -135,39 +161,40 @@ fs::path FileCache::file_of(std::string_view key) const {
   return folder_ / (os::digest_of(key) + std::string(kEntrySuffix));
 }
 
-FileCache::Content FileCache::find(std::string_view key) const {
+FileCache::Parts FileCache::find(std::string_view key) const {
   const fs::path file = file_of(key);
   struct Found {
     explicit Found(const fs::path& path) : mapping(path) {}
     Mapping mapping;
-    std::string_view content;
+    std::vector<std::string_view> parts;
   };
-  const auto found = std::make_shared<Found>(file);
-  const auto content = found->mapping.content_of(key);
-  if (!content) return nullptr;
-  found->content = *content;
+  const auto found = std::make_shared<Found>(file);  // the parts refer to the mapping
+  found->parts = found->mapping.parts_of(key);
+  if (found->parts.empty()) return nullptr;
   ::utimensat(AT_FDCWD, file.c_str(), nullptr, 0);
-  return {found, &found->content};
+  return {found, &found->parts};
 }
 
 void FileCache::keep(std::string_view key, std::span<const std::string_view> parts,
                      std::size_t checked) const {
   Header header;
   header.key_bytes = key.size();
-  header.checksum = checksum(key);
-  std::string checked_text;
+  header.checked = checked;
+  header.parts = parts.size();
+  std::size_t bytes = aligned(sizeof header + key.size());
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    header.bytes += parts[i].size();
-    if (i < checked) checked_text += parts[i];
+    header.part_bytes[i] = parts[i].size();
+    bytes += aligned(parts[i].size());
   }
-  header.checked_bytes = checked_text.size();
-  header.checksum = checksum(checked_text, header.checksum);
-  const std::string padding(header.content_at() - sizeof header - key.size(), '\0');
-  if (header.content_at() + header.bytes > most_bytes_) return;
+  if (bytes > most_bytes_) return;
+  header.checksum = checksum_of(header, key, parts);
   std::error_code ignored;
   fs::create_directories(folder_, ignored);
-  const std::string_view head(reinterpret_cast<const char*>(&header), sizeof header);
-  if (write_entry(file_of(key), {head, key, padding}, parts) == 0) remove_oldest();
+  const std::string head =
+      std::string(reinterpret_cast<const char*>(&header), sizeof header) + std::string(key);
+  std::vector<std::string_view> all{head};
+  all.insert(all.end(), parts.begin(), parts.end());
+  if (write_aligned(file_of(key), all) == 0) remove_oldest();
 }
 
 void FileCache::remove_oldest() const {
@@ -213,10 +240,25 @@ void FileCache::require_writable() const {
   std::error_code error;
   fs::create_directories(folder_, error);
   const fs::path probe = folder_ / "probe";
-  const int reason = error ? error.value() : write_entry(probe, {}, {});
+  const int reason = error ? error.value() : write_aligned(probe, {});
   fs::remove(probe, error);
   if (reason != 0)
     throw Error(ErrorCode::kSetup, {folder_.string()}, "cannot be written: " + reason_of(reason));
+}
+
+FileState state_of(const fs::path& path, bool with_entries) {
+  struct stat found {};
+  if (::stat(path.c_str(), &found) != 0) return {};
+  const std::int64_t kind = found.st_mode & S_IFMT;
+  if (kind == S_IFDIR && !with_entries) return {kind};
+  return {kind, static_cast<std::int64_t>(found.st_ino), found.st_size, nanoseconds(found.st_mtim),
+          nanoseconds(found.st_ctim)};
+}
+
+bool is_older(const FileState& state, Duration age) {
+  timespec now{};
+  ::clock_gettime(CLOCK_REALTIME, &now);
+  return state.back() < nanoseconds(now) - age.count();
 }
 
 const std::string& identity_of_program() {
@@ -225,11 +267,11 @@ const std::string& identity_of_program() {
     const auto add = [](dl_phdr_info* object, std::size_t, void* out) {
       // The program itself has no name.
       const char* const file = *object->dlpi_name != '\0' ? object->dlpi_name : "/proc/self/exe";
-      struct stat found {};
-      if (::stat(file, &found) != 0) return 0;
-      *static_cast<std::string*>(out) +=
-          ' ' + std::to_string(found.st_ino) + '/' + std::to_string(found.st_size) + '/' +
-          std::to_string(found.st_mtim.tv_sec) + '.' + std::to_string(found.st_mtim.tv_nsec);
+      // Without the time of its status, which links to it change.
+      FileState state = state_of(file);
+      state.back() = 0;
+      for (const std::int64_t part : state)
+        *static_cast<std::string*>(out) += ' ' + std::to_string(part);
       return 0;
     };
     ::dl_iterate_phdr(add, &text);

@@ -17,10 +17,11 @@ namespace {
 // A world, and what is made of it and the files that it names.
 struct Parts {
   // Keeps the files of meshes only until all parts have read them.
-  Parts(World read, const WarningSink& warn, const MeshFiles& meshes = MeshFiles())
+  Parts(World read, const WarningSink& warn, const std::optional<FileCache>& cache,
+        const MeshFiles& meshes = MeshFiles())
       : world(usable(std::move(read), meshes, warn)),
         dynamics(world, warn, meshes),
-        scene(std::make_shared<const raster::Scene>(make_scene(world, warn, meshes))) {}
+        scene(std::make_shared<const raster::Scene>(make_scene(world, warn, meshes, cache))) {}
 
   static World usable(World world, const MeshFiles& meshes, const WarningSink& warn) {
     leave_out_unusable_meshes(world, meshes, warn);
@@ -175,11 +176,12 @@ class MujocoSimulator final : public Simulator {
 
 const bool kHasMujoco = true;
 
-MakeMujocoSimulator prepare_mujoco_simulator(World world, const WarningSink& warn) {
+MakeMujocoSimulator prepare_mujoco_simulator(World world, const WarningSink& warn,
+                                             const std::optional<FileCache>& cache) {
   const FileLocation file{world.file.string()};
   try {
     // Shared, because a std::function must be copyable.
-    const auto parts = std::make_shared<Parts>(std::move(world), printable_warnings(warn));
+    const auto parts = std::make_shared<Parts>(std::move(world), printable_warnings(warn), cache);
     return [parts](const WarningSink& warn_later, int threads_ahead) {
       return std::make_unique<MujocoSimulator>(parts, warn_later, threads_ahead);
     };

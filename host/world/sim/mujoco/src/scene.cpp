@@ -4,7 +4,7 @@
 #include "scene.h"
 
 #include "meshes/named_file.h"
-#include "meshes/texture_file.h"
+#include "scene_textures.h"
 
 #include <algorithm>
 #include <map>
@@ -30,27 +30,6 @@ raster::Rgb rgb(const Vec3& v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
-// Each pixel is the mean of four.
-raster::Texture halved(const raster::Texture& in) {
-  raster::Texture out{std::max(1, in.width_px / 2), std::max(1, in.height_px / 2), {}};
-  out.rgba.reserve(4 * static_cast<std::size_t>(out.width_px) *
-                   static_cast<std::size_t>(out.height_px));
-  const auto pixel = [&](int x, int y) {
-    const auto column = static_cast<std::size_t>(std::min(x, in.width_px - 1));
-    const auto row = static_cast<std::size_t>(std::min(y, in.height_px - 1));
-    return in.rgba.data() + 4 * (row * static_cast<std::size_t>(in.width_px) + column);
-  };
-  for (int y = 0; y < out.height_px; ++y)
-    for (int x = 0; x < out.width_px; ++x) {
-      const std::uint8_t* const of[] = {pixel(2 * x, 2 * y), pixel(2 * x + 1, 2 * y),
-                                        pixel(2 * x, 2 * y + 1), pixel(2 * x + 1, 2 * y + 1)};
-      for (std::size_t c = 0; c < 4; ++c)
-        out.rgba.push_back(
-            static_cast<std::uint8_t>((of[0][c] + of[1][c] + of[2][c] + of[3][c] + 2) / 4));
-    }
-  return out;
-}
-
 // Of a part of a mesh, in SceneParts.
 struct PartNumbers {
   std::size_t mesh;
@@ -72,8 +51,8 @@ raster::Material tinted(raster::Material material, const Material& tint) {
 
 class SceneBuilder {
  public:
-  SceneBuilder(const MeshFiles& mesh_files, bool is_strict, const WarningSink& warn)
-      : mesh_files_(mesh_files), is_strict_(is_strict), warn_(warn) {}
+  SceneBuilder(const MeshFiles& mesh_files, const WarningSink& warn)
+      : mesh_files_(mesh_files), warn_(warn) {}
 
   /// `turned` is the body before the first of its parts behind joints.
   void add_link(const Link& link, const Pose& X, std::optional<std::size_t> body,
@@ -131,6 +110,8 @@ class SceneBuilder {
   }
 
   raster::SceneParts take() { return std::move(parts_); }
+  /// What the materials number.
+  const std::vector<TextureSource>& textures() const { return sources_; }
 
  private:
   static float factor(double attenuation) { return static_cast<float>(std::min(attenuation, 1e6)); }
@@ -156,14 +137,7 @@ class SceneBuilder {
 
   void add_part(MeshPart& part, std::vector<PartNumbers>& numbers) {
     raster::Material material = material_of(part.look.material);
-    if (part.look.picture) {
-      const auto [known, is_new] = pictures_.try_emplace(part.look.picture);
-      if (is_new) {
-        add_texture(*part.look.picture);
-        known->second = parts_.textures.size() - 1;
-      }
-      material.texture = known->second;
-    }
+    if (part.look.picture) material.texture = texture_of({{}, {}, part.look.picture});
     numbers.push_back({add_mesh(std::move(part.mesh)), parts_.materials.size()});
     parts_.materials.push_back(material);
   }
@@ -226,67 +200,36 @@ class SceneBuilder {
     material.emissive = rgb(in.emissive_rgb);
     material.alpha = static_cast<float>(in.alpha);
     material.shininess = kShininess;
-    if (!in.albedo_map.empty()) {
-      read_named(in.albedo_map_at, [&] { material.texture = texture_of(in.albedo_map); });
-    }
+    if (!in.albedo_map.empty()) material.texture = texture_of({in.albedo_map, in.albedo_map_at});
     return material;
   }
 
-  // None: it cannot be read, and the world goes without it.
-  std::optional<std::size_t> texture_of(const std::filesystem::path& file) {
-    const auto [known, is_new] = textures_.try_emplace(file);
-    if (!is_new) return known->second;
-    try {
-      add_texture(load_texture(file, warn_));
-      known->second = parts_.textures.size() - 1;
-    } catch (const Error& error) {
-      if (is_strict_ || error.code() != ErrorCode::kBadFile) throw;
-      warn_({Consequence::kLooksDifferent,
-             {file.string()},
-             "texture",
-             std::string("cannot be used, and the colours are: ") + error.what(),
-             true});
+  std::size_t texture_of(const TextureSource& source) {
+    const auto [known, is_new] = textures_.try_emplace({source.file, source.picture});
+    if (is_new) {
+      known->second = sources_.size();
+      sources_.push_back(source);
     }
     return known->second;
   }
 
-  // Where all of them have more pixels than the renderer takes, the largest ones are halved.
-  void add_texture(raster::Texture texture) {
-    texels_ += texture.rgba.size() / 4;
-    parts_.textures.push_back(std::move(texture));
-    while (texels_ > raster::kMaxTexels) {
-      const auto size = [](const raster::Texture& t) { return t.rgba.size(); };
-      raster::Texture& largest = *std::ranges::max_element(parts_.textures, {}, size);
-      texels_ -= largest.rgba.size() / 4;
-      largest = halved(largest);
-      texels_ += largest.rgba.size() / 4;
-      if (!std::exchange(has_halved_, true))
-        warn_({Consequence::kLooksDifferent,
-               {},
-               "textures",
-               "have more than 67,108,864 pixels together: the largest are drawn at half their "
-               "size"});
-    }
-  }
-
   const MeshFiles& mesh_files_;
-  bool is_strict_;
   const WarningSink& warn_;
   raster::SceneParts parts_;
+  std::vector<TextureSource> sources_;  // of the textures, by their numbers
   std::size_t triangles_ = 0;
-  std::size_t texels_ = 0;
-  bool has_halved_ = false;
   std::map<std::tuple<MeshKey, double, double, TextureRepeat, bool>, std::size_t> meshes_;
   std::map<MeshKey, std::vector<PartNumbers>> looks_;
-  std::map<std::shared_ptr<const raster::Texture>, std::size_t> pictures_;  // never walked through
-  std::map<std::filesystem::path, std::optional<std::size_t>> textures_;
+  // Never walked through.
+  std::map<std::pair<std::filesystem::path, std::shared_ptr<const raster::Texture>>, std::size_t>
+      textures_;
 };
 
 }  // namespace
 
-raster::SceneParts make_scene(const World& world, const WarningSink& warn,
-                              const MeshFiles& meshes) {
-  SceneBuilder builder(meshes, world.is_strict, warn);
+raster::SceneParts make_scene(const World& world, const WarningSink& warn, const MeshFiles& meshes,
+                              const std::optional<FileCache>& cache) {
+  SceneBuilder builder(meshes, warn);
   const auto number_of = [&](const Model* model) {
     return static_cast<std::uint32_t>(model - world.models.data()) + 1;
   };
@@ -305,6 +248,7 @@ raster::SceneParts make_scene(const World& world, const WarningSink& warn,
   raster::SceneParts parts = builder.take();
   parts.ambient = rgb(world.ambient_rgb);
   parts.background = rgb(world.background_rgb);
+  add_textures(builder.textures(), world.is_strict, warn, cache, parts);
   return parts;
 }
 

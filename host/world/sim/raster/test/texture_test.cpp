@@ -9,14 +9,14 @@ namespace tether::raster {
 namespace {
 
 TEST(Texture, IsAveragedExactlyAtOddSizes) {
-  PreparedScene scene;
+  PreparedTextures scene;
   EXPECT_EQ(add_texture({3, 1, {0, 0, 0, 255, 90, 0, 0, 255, 240, 0, 0, 255}}, scene), 2);
   ASSERT_EQ(scene.levels.size(), 2U);
   EXPECT_EQ(scene.texels.back().channels[0][1], 110 - 128);
 }
 
 TEST(Texture, WeightsPixelsByHowMuchOfThemIsCovered) {
-  PreparedScene scene;
+  PreparedTextures scene;
   add_texture({5, 1, {10, 0, 0, 255, 20, 0, 0, 255, 30, 0, 0, 255, 40, 0, 0, 255, 50, 0, 0, 255}},
               scene);
   // Two and a half pixels each: (10 + 20 + 15) / 2.5 and (15 + 40 + 50) / 2.5.
@@ -29,7 +29,7 @@ TEST(Texture, WeightsPixelsByHowMuchOfThemIsCovered) {
 
 // The mean of 253, 254, 254 and 254 is 253.75; no channel spills into the next one.
 TEST(Texture, IsAveragedExactlyAtEvenSizes) {
-  PreparedScene scene;
+  PreparedTextures scene;
   add_texture({2, 2, {253, 0, 255, 0, 254, 0, 255, 1, 254, 0, 255, 0, 254, 1, 255, 0}}, scene);
   const TexelPair& one = scene.texels.back();
   const int expected[] = {254, 0, 255, 0};
@@ -38,7 +38,7 @@ TEST(Texture, IsAveragedExactlyAtEvenSizes) {
 
 TEST(Texture, NeedsTheRoomThatIsSaid) {
   for (const auto& [width, height] : {std::pair{1, 1}, {2, 2}, {5, 1}, {7, 16}}) {
-    PreparedScene scene;
+    PreparedTextures scene;
     const Texture texture{width, height,
                           std::vector<std::uint8_t>(static_cast<std::size_t>(4 * width * height))};
     add_texture(texture, scene);
@@ -47,7 +47,7 @@ TEST(Texture, NeedsTheRoomThatIsSaid) {
 }
 
 TEST(Texture, RepeatsColumnsAndRowsAcrossItsEdges) {
-  PreparedScene scene;
+  PreparedTextures scene;
   add_texture({2, 2, {1, 0, 0, 0, 2, 0, 0, 0, 3, 0, 0, 0, 4, 0, 0, 0}}, scene);
   std::vector<int> upper;
   std::vector<int> lower;

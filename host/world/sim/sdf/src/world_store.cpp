@@ -35,9 +35,9 @@ std::string key_of(const WorldRequest& request) {
 /// @return whether the cache has a world that reading its files would give now as well
 bool read_kept(const FileCache& cache, const std::string& key, World& world,
                std::vector<Warning>& warnings) try {
-  const FileCache::Content kept = cache.find(key);
+  const FileCache::Parts kept = cache.find(key);
   if (kept == nullptr) return false;
-  ByteReader in(*kept);
+  ByteReader in(kept->front());
   Lookups::Answers answers;
   in(answers);
   if (!are_current(answers)) return false;

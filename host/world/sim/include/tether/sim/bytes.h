@@ -7,14 +7,12 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <set>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <type_traits>
 #include <utility>
 #include <variant>
-#include <vector>
 
 /// Values as bytes, for the same program on the same machine. A struct names its parts once, for
 /// both directions:
@@ -38,83 +36,57 @@ concept Is = std::same_as<std::remove_const_t<T>, Plain>;
 struct AnyIo {
   void operator()(const auto&...) const {}
 };
-
 template <class T>
 concept Listed = requires(const AnyIo& io, T& whole) {
   each_part(io, whole);
 };
 
 template <class T>
-inline constexpr bool kHasGaps = Listed<T>;
+concept Path = std::same_as<T, std::filesystem::path>;
 template <class T>
-inline constexpr bool kHasGaps<std::optional<T>> = true;
-template <class A, class B>
-inline constexpr bool kHasGaps<std::pair<A, B>> = true;
-template <class... Ts>
-inline constexpr bool kHasGaps<std::variant<Ts...>> = true;
-
-/// What is copied byte by byte.
+concept Variant = requires {
+  std::variant_size<T>::value;
+};
 template <class T>
-concept Flat = !kHasGaps<T> && std::is_trivially_copyable_v<T> && !std::is_pointer_v<T> &&
-               !std::same_as<T, std::string_view>;
+concept Pair = requires(T& both) {
+  both.first, both.second;
+};
+/// Of one value, or of none.
+template <class T>
+concept Optional = !std::is_pointer_v<T> && requires(T & value) {
+  *value, value.reset();
+};
+/// Plain numbers.
+template <class T>
+concept Gapless =
+    std::is_trivially_copyable_v<T> && !std::is_pointer_v<T> && !std::same_as<T, std::string_view>;
 
 class ByteWriter {
  public:
-  template <class... Parts>
-  void operator()(const Parts&... parts) {
-    (write(parts), ...);
-  }
+  void operator()(const auto&... parts) { (write(parts), ...); }
   std::string take() { return std::move(bytes_); }
 
  private:
-  template <Flat T>
+  template <class T>
   void write(const T& value) {
-    bytes_.append(reinterpret_cast<const char*>(&value), sizeof value);
-  }
-  void write(const std::string& text) {
-    write(text.size());
-    bytes_ += text;
-  }
-  void write(const std::filesystem::path& path) { write(path.native()); }
-  template <class T>
-  void write_all(const T& items) {
-    write(items.size());
-    for (const auto& item : items) write(item);
-  }
-  template <class T>
-  void write(const std::vector<T>& items) {
-    write_all(items);
-  }
-  template <class T>
-  void write(const std::set<T>& items) {
-    write_all(items);
-  }
-  template <class Key, class T>
-  void write(const std::map<Key, T>& items) {
-    write_all(items);
-  }
-  template <class A, class B>
-  void write(const std::pair<A, B>& both) {
-    (*this)(both.first, both.second);
-  }
-  template <class T>
-  void write(const std::optional<T>& value) {
-    write(value.has_value());
-    if (value) write(*value);
-  }
-  template <class T>
-  void write(const std::shared_ptr<const T>& value) {
-    write(value != nullptr);
-    if (value) write(*value);
-  }
-  template <class... Ts>
-  void write(const std::variant<Ts...>& value) {
-    write(value.index());
-    std::visit([&](const auto& one) { write(one); }, value);
-  }
-  template <Listed T>
-  void write(const T& whole) {
-    each_part(*this, whole);
+    if constexpr (Listed<T>) {
+      each_part(*this, value);
+    } else if constexpr (Path<T>) {
+      write(value.native());
+    } else if constexpr (Variant<T>) {
+      write(value.index());
+      std::visit([&](const auto& one) { write(one); }, value);
+    } else if constexpr (Optional<T>) {
+      write(static_cast<bool>(value));
+      if (value) write(*value);
+    } else if constexpr (Pair<T>) {
+      (*this)(value.first, value.second);
+    } else if constexpr (Gapless<T>) {
+      bytes_.append(reinterpret_cast<const char*>(&value), sizeof value);
+    } else {  // texts, lists, sets, maps
+      write(value.size());
+      for (const auto& item : value) write(item);
+    }
   }
 
   std::string bytes_;
@@ -125,81 +97,71 @@ class ByteReader {
  public:
   explicit ByteReader(std::string_view bytes) : bytes_(bytes) {}
 
-  template <class... Parts>
-  void operator()(Parts&... parts) {
-    (read(parts), ...);
-  }
+  void operator()(auto&... parts) { (read(parts), ...); }
   bool is_at_end() const { return bytes_.empty(); }
 
  private:
-  std::string_view next(std::size_t count) {
-    if (count > bytes_.size()) throw std::out_of_range("too few bytes");
-    const std::string_view found = bytes_.substr(0, count);
-    bytes_.remove_prefix(count);
-    return found;
+  static void require(bool holds) {
+    if (!holds) throw std::out_of_range("too few bytes");
   }
   template <class T>
-  T value() {
+  T next() {
     T result{};
     read(result);
     return result;
   }
-  /// Of items, each of which has a byte at least.
-  std::size_t count() {
-    const auto found = value<std::size_t>();
-    if (found > bytes_.size()) throw std::out_of_range("too few bytes");
-    return found;
-  }
 
-  template <Flat T>
+  template <class T>
   void read(T& value) {
-    std::memcpy(static_cast<void*>(&value), next(sizeof value).data(), sizeof value);
-  }
-  void read(std::string& text) { text = next(count()); }
-  void read(std::filesystem::path& path) { path = value<std::string>(); }
-  template <class T>
-  void read(std::vector<T>& items) {
-    items.clear();
-    for (std::size_t left = count(); left > 0; --left) read(items.emplace_back());
-  }
-  template <class T>
-  void read(std::set<T>& items) {
-    items.clear();
-    for (std::size_t left = count(); left > 0; --left) items.insert(items.end(), value<T>());
-  }
-  template <class Key, class T>
-  void read(std::map<Key, T>& items) {
-    items.clear();
-    for (std::size_t left = count(); left > 0; --left) {
-      Key key = value<Key>();
-      read(items[std::move(key)]);
+    if constexpr (Listed<T>) {
+      each_part(*this, value);
+    } else if constexpr (Path<T>) {
+      value = next<std::string>();
+    } else if constexpr (Variant<T>) {
+      read_alternative(value, next<std::size_t>());
+    } else if constexpr (Optional<T>) {
+      value.reset();
+      if (next<bool>()) set(value);
+    } else if constexpr (Pair<T>) {
+      (*this)(value.first, value.second);
+    } else if constexpr (Gapless<T>) {
+      require(bytes_.size() >= sizeof value);
+      std::memcpy(static_cast<void*>(&value), bytes_.data(), sizeof value);
+      bytes_.remove_prefix(sizeof value);
+    } else {
+      value.clear();
+      std::size_t left = next<std::size_t>();
+      require(left <= bytes_.size());  // each item has a byte at least
+      for (; left > 0; --left) value.insert(value.end(), next<Item<T>>());
     }
   }
-  template <class A, class B>
-  void read(std::pair<A, B>& both) {
-    (*this)(both.first, both.second);
+
+  template <class T>
+  void set(std::optional<T>& value) {
+    value = next<T>();
   }
   template <class T>
-  void read(std::optional<T>& value) {
-    value.reset();
-    if (this->value<bool>()) read(value.emplace());
-  }
-  template <class T>
-  void read(std::shared_ptr<const T>& value) {
-    value.reset();
-    if (this->value<bool>()) value = std::make_shared<const T>(this->value<T>());
+  void set(std::shared_ptr<const T>& value) {
+    value = std::make_shared<const T>(next<T>());
   }
   template <class... Ts>
-  void read(std::variant<Ts...>& value) {
-    const auto index = this->value<std::size_t>();
-    if (index >= sizeof...(Ts)) throw std::out_of_range("no such alternative");
+  void read_alternative(std::variant<Ts...>& value, std::size_t index) {
+    require(index < sizeof...(Ts));
     std::size_t at = 0;
-    (void)((at++ == index && (read(value.template emplace<Ts>()), true)) || ...);
+    (void)((at++ == index && (value = next<Ts>(), true)) || ...);
   }
-  template <Listed T>
-  void read(T& whole) {
-    each_part(*this, whole);
-  }
+
+  /// Of a list or a set; of a map, which has constant keys.
+  template <class T>
+  struct ItemOf {
+    using Type = typename T::value_type;
+  };
+  template <class Key, class T>
+  struct ItemOf<std::map<Key, T>> {
+    using Type = std::pair<Key, T>;
+  };
+  template <class T>
+  using Item = typename ItemOf<T>::Type;
 
   std::string_view bytes_;
 };

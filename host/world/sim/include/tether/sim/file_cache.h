@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -8,6 +10,10 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
+
+#include <tether/base/time.h>
 
 namespace tether::sim {
 
@@ -26,16 +32,17 @@ class FileCache {
   /// there is no home.
   static std::optional<FileCache> of_user();
 
-  /// An entry, as long as it lives, whatever becomes of its file. Begins at a multiple of 64 bytes.
-  using Content = std::shared_ptr<const std::string_view>;
+  /// The parts of an entry, as long as it lives, whatever becomes of its file. Each begins at a
+  /// multiple of 64 bytes.
+  using Parts = std::shared_ptr<const std::vector<std::string_view>>;
   /// The entry of the key; it has been used now. Null: there is none, or it is damaged.
-  Content find(std::string_view key) const;
+  Parts find(std::string_view key) const;
 
-  /// Keeps the parts, one after the other. The first `checked` ones are compared with their
-  /// checksum when the entry is found; of the others, only the size is checked.
+  /// When the entry is found, the first `checked` parts are compared with their checksum; of the
+  /// others, only the size is checked.
   void keep(std::string_view key, std::span<const std::string_view> parts,
             std::size_t checked) const;
-  void keep(std::string_view key, std::string_view content) const { keep(key, {&content, 1}, 1); }
+  void keep(std::string_view key, std::string_view part) const { keep(key, {&part, 1}, 1); }
 
   struct Size {
     std::size_t entries = 0;
@@ -57,6 +64,16 @@ class FileCache {
   std::filesystem::path folder_;
   std::uintmax_t most_bytes_;
 };
+
+/// What changes with a file, or with the entries of a folder: its kind, inode, size, and the times
+/// of the last change of its content and of its status [ns]. Of nothing, zeros.
+using FileState = std::array<std::int64_t, 5>;
+/// Of a folder whose entries do not matter, only the kind.
+FileState state_of(const std::filesystem::path& path, bool with_entries = false);
+/// Whether the last change was longer ago than `age`.
+bool is_older(const FileState& state, Duration age);
+/// A file that changed less than this ago can change again without another time.
+inline constexpr Duration kFileTick = std::chrono::seconds(2);
 
 /// What distinguishes this program, with its libraries, from others and from itself after a change.
 const std::string& identity_of_program();

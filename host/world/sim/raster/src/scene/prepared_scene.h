@@ -4,6 +4,9 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <memory>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include <tether/sim_raster/scene.h>
@@ -70,7 +73,7 @@ struct MaterialRow {
   std::array<float, 3> specular;
   float shininess;
   float alpha;
-  std::int32_t first_level;  ///< of PreparedScene::levels; 0: no texture
+  std::int32_t first_level;  ///< of PreparedTextures::levels; 0: no texture
   std::int32_t levels;
   std::int32_t is_shiny;                ///< whether it is specular at all
   float texture_width, texture_height;  ///< of its largest size
@@ -88,6 +91,21 @@ struct LevelRow {
   std::int32_t first_pair;            ///< that of row 0, column 0
   std::int32_t stride;                ///< from a row to the next
   float width_256ths, height_256ths;  ///< [texels/256]
+};
+
+/// A texture of a TextureSet.
+struct TextureRow {
+  std::int32_t width_px, height_px;
+  std::int32_t first_level, levels;
+  std::int32_t is_transparent;
+};
+
+struct PreparedTextures {
+  std::vector<TextureRow> rows;
+  std::vector<LevelRow> levels;   ///< the first is white; so is one after the last
+  std::vector<TexelPair> texels;  ///< empty: somebody else has them
+  std::span<const TexelPair> all_texels;
+  std::shared_ptr<const void> owner;  ///< of these texels
 };
 
 struct PreparedInstance {
@@ -110,8 +128,9 @@ struct PreparedScene {
   std::vector<Cluster> clusters;
   std::vector<PreparedMesh> meshes;
   std::vector<MaterialRow> materials;
-  std::vector<TexelPair> texels;
-  std::vector<LevelRow> levels;  ///< the first is white; so is one after the last
+  std::optional<TextureSet> textures;
+  std::span<const TexelPair> texels;  ///< those of `textures`
+  std::span<const LevelRow> levels;   ///< likewise
   std::vector<PreparedInstance> instances;
   std::vector<Light> lights;  ///< directions unit
   Rgb background{};
@@ -125,7 +144,7 @@ PreparedMesh add_mesh(const Mesh& mesh, PreparedScene& scene);
 
 /// Appends a texture and its smaller versions, each half as large: down to one pixel.
 /// @returns how many levels.
-std::int32_t add_texture(const Texture& texture, PreparedScene& scene);
+std::int32_t add_texture(const Texture& texture, PreparedTextures& out);
 
 /// How many texels `add_texture` adds, or a few more.
 std::size_t texels_of(const Texture& texture);

@@ -12,7 +12,6 @@ namespace tether::raster {
 namespace {
 
 constexpr float kOpaque = 0.995F;
-constexpr std::uint32_t kOpaqueByte = 254;
 
 [[noreturn]] void refuse(const std::string& subject, const std::string& what) {
   throw Error(ErrorCode::kBadFile, subject + ": " + what).about(subject);
@@ -61,15 +60,6 @@ void check(const Mesh& mesh, const std::string& name) {
                         [&](std::uint32_t i) { return i < mesh.vertices.size(); }),
             name, "an index is not that of a vertex");
   }
-}
-
-void check(const Texture& texture, const std::string& name) {
-  const auto is_size = [](int px) { return px >= 1 && px <= kMaxTextureSize_px; };
-  require(is_size(texture.width_px) && is_size(texture.height_px), name,
-          "its size is not 1 to 8192 pixels each way");
-  require(texture.rgba.size() == std::size_t{4} * static_cast<std::size_t>(texture.width_px) *
-                                     static_cast<std::size_t>(texture.height_px),
-          name, "not four bytes for each pixel");
 }
 
 void check(const Material& material, const std::string& name, std::size_t textures) {
@@ -128,9 +118,6 @@ void check_totals(const SceneParts& parts) {
     triangles += parts.meshes[i.mesh].triangles.size();
     require(triangles <= kMaxTriangles, "scene", "more than 10,000,000 triangles");
   }
-  std::size_t texels = 0;
-  for (const Texture& texture : parts.textures) texels += texture.rgba.size() / 4;
-  require(texels <= kMaxTexels, "scene", "textures of more than 67,108,864 pixels");
 }
 
 MaterialRow make_row(const Material& m, const Rgb& ambient) {
@@ -145,16 +132,13 @@ MaterialRow make_row(const Material& m, const Rgb& ambient) {
   return row;
 }
 
-bool is_transparent(const Texture& texture) {
-  for (std::size_t i = 3; i < texture.rgba.size(); i += 4) {
-    if (texture.rgba[i] < kOpaqueByte) return true;
-  }
-  return false;
-}
-
 class Preparation {
  public:
-  explicit Preparation(const SceneParts& parts) : parts_(parts) {}
+  Preparation(const SceneParts& parts, TextureSet textures) : parts_(parts) {
+    scene_.texels = textures.prepared().all_texels;
+    scene_.levels = textures.prepared().levels;
+    scene_.textures = std::move(textures);
+  }
 
   PreparedScene make() {
     scene_.background = parts_.background;
@@ -169,30 +153,16 @@ class Preparation {
 
  private:
   void add_materials() {
-    std::vector<std::int32_t> first_levels;
-    std::vector<std::int32_t> levels;
-    std::vector<bool> transparent;
-    const Texture white{1, 1, {255, 255, 255, 255}};
-    // Else the vector would be copied as often as it grows: there may be 700 MB.
-    std::size_t texels = 2 * texels_of(white);
-    for (const Texture& texture : parts_.textures) texels += texels_of(texture);
-    scene_.texels.reserve(texels);
-    add_texture(white, scene_);
-    for (const Texture& texture : parts_.textures) {
-      first_levels.push_back(static_cast<std::int32_t>(scene_.levels.size()));
-      levels.push_back(add_texture(texture, scene_));
-      transparent.push_back(is_transparent(texture));
-    }
-    add_texture(white, scene_);
     for (const Material& material : parts_.materials) {
       MaterialRow row = make_row(material, parts_.ambient);
       bool seen_through = material.alpha < kOpaque;
       if (material.texture) {
-        row.first_level = first_levels[*material.texture];
-        row.levels = levels[*material.texture];
-        row.texture_width = static_cast<float>(parts_.textures[*material.texture].width_px);
-        row.texture_height = static_cast<float>(parts_.textures[*material.texture].height_px);
-        seen_through = seen_through || transparent[*material.texture];
+        const TextureRow& texture = scene_.textures->prepared().rows[*material.texture];
+        row.first_level = texture.first_level;
+        row.levels = texture.levels;
+        row.texture_width = static_cast<float>(texture.width_px);
+        row.texture_height = static_cast<float>(texture.height_px);
+        seen_through = seen_through || texture.is_transparent != 0;
       }
       scene_.materials.push_back(row);
       transparent_materials_.push_back(seen_through);
@@ -240,12 +210,12 @@ class Preparation {
 
 Scene::Scene(const SceneParts& parts) {
   check_all(parts.meshes, "mesh");
-  check_all(parts.textures, "texture");
-  check_all(parts.materials, "material", parts.textures.size());
+  TextureSet textures = parts.texture_set ? *parts.texture_set : TextureSet(parts.textures);
+  check_all(parts.materials, "material", textures.size());
   check_all(parts.instances, "visual", parts);
   check_all(parts.lights, "light");
   check_totals(parts);
-  prepared_ = std::make_unique<const PreparedScene>(Preparation(parts).make());
+  prepared_ = std::make_unique<const PreparedScene>(Preparation(parts, std::move(textures)).make());
 }
 
 Scene::~Scene() = default;

@@ -98,21 +98,21 @@ TexelPair pair_of(std::uint32_t upper, std::uint32_t lower) {
   return pair;
 }
 
-void add_level(const Image& image, PreparedScene& scene) {
+void add_level(const Image& image, PreparedTextures& out) {
   const int stride = image.width + 2;
   const auto width = static_cast<std::size_t>(image.width);
   const auto row = [&](int y) {
     return image.texels.data() +
            static_cast<std::size_t>((y + image.height) % image.height) * width;
   };
-  scene.levels.push_back({static_cast<std::int32_t>(scene.texels.size()) + stride + 1, stride,
-                          256.0F * static_cast<float>(image.width),
-                          256.0F * static_cast<float>(image.height)});
+  out.levels.push_back({static_cast<std::int32_t>(out.texels.size()) + stride + 1, stride,
+                        256.0F * static_cast<float>(image.width),
+                        256.0F * static_cast<float>(image.height)});
   for (int y = -1; y < image.height; ++y) {
     const std::uint32_t *upper = row(y), *lower = row(y + 1);
-    scene.texels.push_back(pair_of(upper[width - 1], lower[width - 1]));
-    for (std::size_t x = 0; x < width; ++x) scene.texels.push_back(pair_of(upper[x], lower[x]));
-    scene.texels.push_back(pair_of(upper[0], lower[0]));
+    out.texels.push_back(pair_of(upper[width - 1], lower[width - 1]));
+    for (std::size_t x = 0; x < width; ++x) out.texels.push_back(pair_of(upper[x], lower[x]));
+    out.texels.push_back(pair_of(upper[0], lower[0]));
   }
 }
 
@@ -127,19 +127,19 @@ std::size_t texels_of(const Texture& texture) {
   }
 }
 
-std::int32_t add_texture(const Texture& texture, PreparedScene& scene) {
-  const std::size_t before = scene.levels.size();
+std::int32_t add_texture(const Texture& texture, PreparedTextures& out) {
+  const std::size_t before = out.levels.size();
   Image image{texture.width_px, texture.height_px, {}};
   image.texels.reserve(texture.rgba.size() / 4);
   for (std::size_t i = 0; i < texture.rgba.size(); i += 4) {
     image.texels.push_back(packed(texture.rgba.data() + i));
   }
-  add_level(image, scene);
+  add_level(image, out);
   while (image.width > 1 || image.height > 1) {
     image = make_smaller(image);
-    add_level(image, scene);
+    add_level(image, out);
   }
-  return static_cast<std::int32_t>(scene.levels.size() - before);
+  return static_cast<std::int32_t>(out.levels.size() - before);
 }
 
 }  // namespace tether::raster

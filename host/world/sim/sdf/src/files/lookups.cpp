@@ -2,10 +2,7 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <ctime>
 #include <utility>
-
-#include <sys/stat.h>
 
 #include <tether/os/text_file.h>
 
@@ -16,25 +13,6 @@ namespace fs = std::filesystem;
 namespace {
 
 thread_local Lookups* current = nullptr;
-
-std::int64_t nanoseconds(const timespec& time) {
-  return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
-}
-
-Lookups::Answer answer_for(const fs::path& path, bool is_listed) {
-  struct stat found {};
-  if (::stat(path.c_str(), &found) != 0) return {};
-  const std::int64_t kind = found.st_mode & S_IFMT;
-  if (kind == S_IFDIR && !is_listed) return {kind};
-  return {kind, static_cast<std::int64_t>(found.st_ino), found.st_size, nanoseconds(found.st_mtim),
-          nanoseconds(found.st_ctim)};
-}
-
-bool is_older(const Lookups::Answer& answer, Duration age) {
-  timespec now{};
-  ::clock_gettime(CLOCK_REALTIME, &now);
-  return answer.back() < nanoseconds(now) - age.count();
-}
 
 }  // namespace
 
@@ -47,7 +25,7 @@ class LookupNote {
     const auto [known, is_new] =
         current->answers_.try_emplace({fs::absolute(path, ignored), is_listed});
     if (!is_new) return;
-    known->second = answer_for(path, is_listed);
+    known->second = state_of(path, is_listed);
     if (!is_older(known->second, current->tick_)) current->are_certain_ = false;
   }
   static void doubt() {
@@ -102,7 +80,7 @@ void note_file(const fs::path& file) {
 bool are_current(const Lookups::Answers& answers) {
   return std::ranges::all_of(answers, [](const auto& one) {
     const auto& [path, is_listed] = one.first;
-    return answer_for(path, is_listed) == one.second;
+    return state_of(path, is_listed) == one.second;
   });
 }
 

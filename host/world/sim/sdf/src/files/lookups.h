@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -9,6 +8,7 @@
 #include <vector>
 
 #include <tether/base/time.h>
+#include <tether/sim/file_cache.h>
 
 /// Questions about paths. The answer is "no" also for what cannot be a path, such as a name that is
 /// too long. While a Lookups lives, each of them is noted with its answer.
@@ -34,11 +34,8 @@ class Lookups {
   Lookups(const Lookups&) = delete;
   Lookups& operator=(const Lookups&) = delete;
 
-  /// What changes with a file, or with the entries of a folder: its kind, number, size and times of
-  /// change. Of a folder whose entries do not matter, only the kind; of nothing, zeros.
-  using Answer = std::array<std::int64_t, 5>;
   /// By path, and whether the entries of a folder matter.
-  using Answers = std::map<std::pair<std::filesystem::path, bool>, Answer>;
+  using Answers = std::map<std::pair<std::filesystem::path, bool>, FileState>;
 
   const Answers& answers() const { return answers_; }
   /// Whether a change since then shows in the answers. Not, if a file was too new, or a folder

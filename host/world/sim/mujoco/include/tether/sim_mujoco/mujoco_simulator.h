@@ -2,8 +2,10 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <utility>
 
+#include <tether/sim/file_cache.h>
 #include <tether/sim/simulator.h>
 
 namespace tether::sim {
@@ -16,10 +18,12 @@ extern const bool kHasMujoco;
 using MakeMujocoSimulator =
     std::function<std::unique_ptr<Simulator>(const WarningSink& warn, int threads_ahead)>;
 
-/// Reads the meshes and textures that a world names, and checks that it can be simulated.
+/// Reads the meshes and textures that a world names, and checks that it can be simulated. Finds the
+/// textures in the cache, or keeps them there.
 /// @throws Error(kBadFile) where the world names a file that cannot be used, else at its own file;
 /// Error(kSetup) when the back end is not built in or memory runs out.
-MakeMujocoSimulator prepare_mujoco_simulator(World world, const WarningSink& warn);
+MakeMujocoSimulator prepare_mujoco_simulator(World world, const WarningSink& warn,
+                                             const std::optional<FileCache>& cache = std::nullopt);
 
 /// The embedded simulator: MuJoCo for dynamics, `sim/raster` for cameras. Its images have the same
 /// bytes on every machine.

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
+#include <string_view>
 #include <vector>
 
 #include <tether/uav/math.h>
@@ -36,6 +38,29 @@ struct Texture {
   int width_px = 0;
   int height_px = 0;
   std::vector<std::uint8_t> rgba;
+};
+
+struct PreparedTextures;
+
+/// Textures in all the sizes in which they are drawn. Immutable.
+class TextureSet {
+ public:
+  /// @throws Error(kBadFile), with the part as its subject, as Scene does.
+  explicit TextureSet(const std::vector<Texture>& textures);
+
+  /// What it consists of, as bytes for the same program. The last array is that of the pixels,
+  /// whose values may be any.
+  std::vector<std::string_view> arrays() const;
+  /// From what `arrays` gave. The pixels stay where they are; `owner` keeps them.
+  /// @throws std::invalid_argument if they are other arrays.
+  TextureSet(std::span<const std::string_view> arrays, std::shared_ptr<const void> owner);
+
+  std::size_t size() const;
+  /// For this library's own sources.
+  const PreparedTextures& prepared() const { return *prepared_; }
+
+ private:
+  std::shared_ptr<const PreparedTextures> prepared_;  // a scene shares it
 };
 
 /// How a surface looks: emissive + ambient·light + Σ(diffuse·light + specular·light), at most 1,
@@ -80,6 +105,7 @@ struct Light {
 struct SceneParts {
   std::vector<Mesh> meshes;
   std::vector<Texture> textures;
+  std::optional<TextureSet> texture_set{};  ///< in place of `textures`
   std::vector<Material> materials;
   std::vector<Instance> instances;
   std::vector<Light> lights;

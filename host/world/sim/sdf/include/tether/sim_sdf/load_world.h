@@ -1,6 +1,5 @@
 #pragma once
 
-#include <chrono>
 #include <optional>
 #include <string>
 #include <utility>
@@ -59,8 +58,7 @@ class WorldStore {
   /// Finds worlds also in a cache, and keeps those there that it reads. None: reads them. A world
   /// with a file that changed less than `tick` ago is not kept: another change may not show in the
   /// file's times.
-  explicit WorldStore(std::optional<FileCache> cache = std::nullopt,
-                      Duration tick = std::chrono::seconds(2))
+  explicit WorldStore(std::optional<FileCache> cache = std::nullopt, Duration tick = kFileTick)
       : cache_(std::move(cache)), tick_(tick) {}
 
   /// As load_world, with the same warnings. Does not notice that a file has changed since the store
