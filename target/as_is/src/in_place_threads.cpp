@@ -15,7 +15,6 @@
 #include <pthread.h>
 #include <semaphore.h>
 #include <sys/syscall.h>
-#include <threads.h>
 #include <unistd.h>
 
 namespace tether::as_is {
@@ -137,9 +136,10 @@ long wait_for_futex(Agent& agent, long word, long operation, long value, const t
   return result == 0 ? 0 : -1;
 }
 
-/// Of C11.
+/// Of C11: its header has the name of one here.
 int thread_result(int error) {
-  return error == 0 ? thrd_success : error == ETIMEDOUT ? thrd_timedout : thrd_error;
+  constexpr int kSuccess = 0, kError = 2, kTimedOut = 4;  // thrd_success and so on
+  return error == 0 ? kSuccess : error == ETIMEDOUT ? kTimedOut : kError;
 }
 
 bool is_timed_wait(long operation) {
@@ -242,17 +242,16 @@ TETHER_IN_PLACE int pthread_mutex_timedlock(pthread_mutex_t* __restrict mutex,
   return pthread_mutex_clocklock(mutex, CLOCK_REALTIME, until);
 }
 
-// In glibc, those of C11 are POSIX' own.
-static_assert(sizeof(cnd_t) == sizeof(pthread_cond_t) && sizeof(mtx_t) == sizeof(pthread_mutex_t));
-
-TETHER_IN_PLACE int cnd_timedwait(cnd_t* __restrict condition, mtx_t* __restrict mutex,
+// In glibc, the conditions and mutexes of C11 are those of POSIX.
+TETHER_IN_PLACE int cnd_timedwait(pthread_cond_t* __restrict condition,
+                                  pthread_mutex_t* __restrict mutex,
                                   const timespec* __restrict until) {
-  return thread_result(pthread_cond_timedwait(reinterpret_cast<pthread_cond_t*>(condition),
-                                              reinterpret_cast<pthread_mutex_t*>(mutex), until));
+  return thread_result(pthread_cond_timedwait(condition, mutex, until));
 }
 
-TETHER_IN_PLACE int mtx_timedlock(mtx_t* __restrict mutex, const timespec* __restrict until) {
-  return thread_result(pthread_mutex_timedlock(reinterpret_cast<pthread_mutex_t*>(mutex), until));
+TETHER_IN_PLACE int mtx_timedlock(pthread_mutex_t* __restrict mutex,
+                                  const timespec* __restrict until) {
+  return thread_result(pthread_mutex_timedlock(mutex, until));
 }
 
 TETHER_IN_PLACE int sem_timedwait(sem_t* __restrict semaphore, const timespec* __restrict until) {
