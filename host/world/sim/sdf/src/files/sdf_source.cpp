@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <new>
 #include <regex>
+#include <set>
 #include <sstream>
 #include <vector>
 
@@ -98,21 +99,50 @@ int line_of_nested_name(const tinyxml2::XMLElement& element) {
   return 0;
 }
 
-/// Of any SDF document, to read a file into. The reader copies what it needs of the description,
-/// which all documents share: a whole copy takes as long as reading a small file.
-sdf::SDFPtr empty_sdf() {
-  const sdf::ElementPtr& description = sdf_description();
-  auto root = std::make_shared<sdf::Element>();
-  root->SetName(description->GetName());
-  root->SetRequired(description->GetRequired());
-  for (const sdf::ParamPtr& attribute : description->GetAttributes())
-    root->AddAttribute(attribute->GetKey(), attribute->GetTypeName(),
-                       attribute->GetDefaultAsString(), attribute->GetRequired(),
-                       attribute->GetDescription());
-  for (std::size_t i = 0; i < description->GetElementDescriptionCount(); ++i)
-    root->AddElementDescription(description->GetElementDescription(static_cast<unsigned int>(i)));
+void collect_names(const tinyxml2::XMLElement& element, std::set<std::string>& names) {
+  names.insert(element.Name());
+  for (const auto* child = element.FirstChildElement(); child != nullptr;
+       child = child->NextSiblingElement())
+    collect_names(*child, names);
+}
+
+/// Elements whose parts libsdformat asks for only where it has found them.
+const std::set<std::string, std::less<>> kFound = {"world",  "model",     "include",  "link",
+                                                   "visual", "collision", "geometry", "material"};
+
+/// An element's description without those parts that have parts, and none of the names, if they may
+/// be absent. The reader copies the description of each element that it reads, with all of its
+/// parts: those of a model take two megabytes.
+sdf::ElementPtr without_unused(const sdf::Element& description,
+                               const std::set<std::string>& names) {
+  auto needed = std::make_shared<sdf::Element>();
+  needed->SetName(description.GetName());
+  needed->SetRequired(description.GetRequired());
+  needed->SetDescription(description.GetDescription());
+  needed->SetCopyChildren(description.GetCopyChildren());
+  needed->SetReferenceSDF(description.ReferenceSDF());
+  for (const sdf::ParamPtr& attribute : description.GetAttributes())
+    needed->AddAttribute(attribute->GetKey(), attribute->GetTypeName(),
+                         attribute->GetDefaultAsString(), attribute->GetRequired(),
+                         attribute->GetDescription());
+  for (std::size_t i = 0; i < description.GetElementDescriptionCount(); ++i) {
+    const sdf::ElementPtr part = description.GetElementDescription(static_cast<unsigned int>(i));
+    const bool has_parts = part->GetElementDescriptionCount() > 0;
+    const bool may_lack = part->GetRequired() == "*" || part->GetRequired() == "0";
+    if (has_parts && may_lack && !names.contains(part->GetName())) continue;
+    needed->AddElementDescription(
+        has_parts && kFound.contains(part->GetName()) ? without_unused(*part, names) : part);
+  }
+  return needed;
+}
+
+/// To read a file into.
+sdf::SDFPtr empty_sdf(const tinyxml2::XMLElement* root) {
+  // What stands for a missing model, and what libsdformat makes of older versions.
+  std::set<std::string> names{"model", "link", "frame", "script", "velocity_decay"};
+  if (root != nullptr) collect_names(*root, names);
   auto sdf = std::make_shared<sdf::SDF>();
-  sdf->Root(root);
+  sdf->Root(without_unused(*sdf_description(), names));
   return sdf;
 }
 
@@ -184,8 +214,8 @@ void SdfSource::read(const WarningSink& warn) {
     bool is_read = false;
     do {
       errors.clear();
-      parsed_ = empty_sdf();
       const auto* root = stage_.root_of(staged.original);
+      parsed_ = empty_sdf(root);
       is_read =
           ask_library({staged.original.string(), root != nullptr ? line_of_nested_name(*root) : 0},
                       [&] { return sdf::readFile(staged.copy, config, parsed_, errors); });
