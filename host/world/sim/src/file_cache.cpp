@@ -240,7 +240,9 @@ void FileCache::require_writable() const {
   std::error_code error;
   fs::create_directories(folder_, error);
   const fs::path probe = folder_ / "probe";
-  const int reason = error ? error.value() : write_aligned(probe, {});
+  const std::string room(std::size_t{1} << 16U, '\0');
+  const std::string_view part = room;
+  const int reason = error ? error.value() : write_aligned(probe, {&part, 1});
   fs::remove(probe, error);
   if (reason != 0)
     throw Error(ErrorCode::kSetup, {folder_.string()}, "cannot be written: " + reason_of(reason));
