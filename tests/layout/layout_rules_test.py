@@ -4,6 +4,7 @@
 """
 
 import pathlib
+import re
 import subprocess
 import unittest
 
@@ -151,6 +152,13 @@ class Repository(unittest.TestCase):
                     *check_leftovers(self.texts), *check_links(self.texts, lambda path: (ROOT / path).exists()),
                     *check_decisions(self.texts)]
         self.assertFalse(breaches, "\n" + "\n".join(breaches))
+
+    def test_what_stands_in_place_of_the_c_library_is_exported(self):
+        exported = set(re.findall(r"(\w+);", (ROOT / "target/as_is/exports.map").read_text()))
+        replaced = {name for source in (ROOT / "target/as_is/src").glob("*.cpp")
+                    for name in re.findall(r"^TETHER_IN_PLACE [^(;]*?(\w+)\(", source.read_text(), re.M)}
+        self.assertGreater(len(replaced), 50)
+        self.assertFalse(replaced - exported)
 
     def test_each_scripts_help_is_its_comment_alone(self):
         scripts = [path for path, text in self.texts.items()

@@ -289,15 +289,18 @@ Status InteractingVehicle::commanded(Status status) {
 // What a program may ignore and say that it has reached its goal, and what leaves open why it has
 // not.
 std::string InteractingVehicle::report() const {
-  const Duration et = now().time_since_epoch();
-  const auto in_ms = [](Duration time, Duration least) {
-    return time < least ? 0 : time / std::chrono::milliseconds(1);
+  const Duration beside = computed_beside(), others = computed_by_others();
+  const double reads = static_cast<double>(clock_reads_);
+  // A scripted clock goes on when it is read: not without something to compare with it.
+  const bool is_any = std::max(beside, others) >= kLeastUncharged || reads >= uav::kPollingClock_hz;
+  const Duration et = is_any ? now().time_since_epoch() : Duration(0);
+  const auto in_ms = [&](Duration time, std::int64_t least_part) {
+    const bool is_much = time >= kLeastUncharged && time * least_part > et;
+    return is_much ? time / std::chrono::milliseconds(1) : 0;
   };
-  const auto uncharged_ms =
-      in_ms(computed_beside(), std::max(kLeastUncharged, et / kLeastPartUncharged));
-  const auto others_ms =
-      in_ms(computed_by_others(), std::max(kLeastUncharged, et / kLeastPartOfOthers));
-  const double read_hz = static_cast<double>(clock_reads_) / std::max(1.0, to_seconds(et));
+  const auto uncharged_ms = in_ms(beside, kLeastPartUncharged);
+  const auto others_ms = in_ms(others, kLeastPartOfOthers);
+  const double read_hz = reads / std::max(1.0, to_seconds(et));
   const auto clock_read_hz = read_hz > uav::kPollingClock_hz ? std::lround(read_hz) : 0;
   if (refused_commands_ == 0 && uncharged_ms == 0 && others_ms == 0 && clock_read_hz == 0)
     return "";
