@@ -214,6 +214,17 @@ MissReason compared(Evidence evidence, const Compared& other, const Compared& mi
   return {evidence, other.label, std::move(text), is_of_other_build, other.verdict->reached};
 }
 
+/// A possible cause that each faster condition has, as `own` if that is one; empty: there is none.
+std::string cause_of_faster(const std::vector<const Compared*>& faster, const std::string& own) {
+  std::string cause = own;
+  for (const Compared* other : faster) {
+    const std::string found = in_each(*other, possible_cause);
+    if (found.empty()) return "";
+    if (cause.empty()) cause = fmt::format("of “{}”, which is faster, {}", other->label, found);
+  }
+  return cause;
+}
+
 MissReason reason_of(const Compared& missed, const std::vector<Compared>& all,
                      std::size_t comparisons) {
   if (const std::string cut = in_each(missed, cut_short); !cut.empty())
@@ -262,15 +273,14 @@ MissReason reason_of(const Compared& missed, const std::vector<Compared>& all,
   const bool some_speed_suffices = std::ranges::any_of(all, [&](const Compared& other) {
     return differ_in_speed_only(other, missed) && is_sufficient(other.verdict->ruling);
   });
-  // What both may have missed it for, and no speed changes, comes before how near each came.
+  // What the faster ones may have missed it for, and no speed changes, comes before how near each
+  // came.
   const std::string cause = in_each(missed, possible_cause);
-  const bool is_cause_of_all =
-      !cause.empty() && std::ranges::all_of(faster, [](const Compared* other) {
-        return !in_each(*other, possible_cause).empty();
-      });
+  const std::string cause_of_all = cause_of_faster(faster, cause);
   for (const Compared* other : faster) {
     if (some_speed_suffices || !other->verdict->is_missed()) continue;
-    if (is_cause_of_all && !is_instant(*other)) return {Evidence::kPossibleCause, "", cause};
+    if (!cause_of_all.empty() && !is_instant(*other))
+      return {Evidence::kPossibleCause, "", cause_of_all};
     if (const std::string limit = met_by(*other->verdict, *missed.verdict); !limit.empty())
       return compared(Evidence::kFasterUndecided, *other, missed,
                       "misses it, too, but meets " + limit);

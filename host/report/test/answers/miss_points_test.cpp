@@ -99,6 +99,19 @@ TEST_F(MissReasons, CanBeAnEmptyBattery) {
 }
 
 // An exit code can mean that the goal was missed, or that the program crashed.
+// Both miss it, and the faster one by less: its radio can be why it does.
+TEST_F(MissReasons, ArePossibleIfTheFasterConditionHasOne) {
+  const std::size_t slow = add("slow", 0, 3, measured(0.2));
+  const std::size_t fast = add("fast", 0, 3, measured(0.02));
+  for (const std::size_t condition : {slow, fast})
+    program(condition).clock.factor = condition == slow ? 10.0 : 1.0;
+  for (auto& trial : trials(fast)) trial.metrics[0].value = 5.5;
+  EXPECT_THAT(answers_of({verdict()})[0].rest, HasSubstr("but by less"));
+  paces_[fast]->messages = 43;
+  EXPECT_THAT(answers_of({verdict()})[0].rest,
+              HasSubstr("A possible reason: of “fast”, which is faster, none of 43 messages"));
+}
+
 TEST_F(MissReasons, OfAProgramAsItIsCanBeItsOwnFailure) {
   const std::size_t board = add("board", 0, 5, measured(0.2));
   EXPECT_EQ(verdict().advice.size(), 1u);
