@@ -49,21 +49,24 @@ class AsIsGroup : public testing::Test {
   TempFolder folder_;
 };
 
-// Each in a process of its own: those that wait and those that compute see one clock.
+// Each in a process of its own: those that wait and those that compute see one clock. Each writes a
+// line at once, because they share the log.
 TEST_F(AsIsGroup, ProcessesHaveOneClockAndTheirWaitsTakeNoRealTime) {
   write_text(folder_ / "one.py",
              "import sys, time\n"
              "for i in range(int(sys.argv[2])):\n"
              "    time.sleep(float(sys.argv[1]))\n"
-             "    print(sys.argv[1], time.monotonic(), flush=True)\n");
+             "    sys.stdout.write(f'{sys.argv[1]} {time.monotonic()}\\n')\n"
+             "    sys.stdout.flush()\n");
   const std::string one = "python3 " + (folder_ / "one.py").string();
   const Output output = fly(one + " 0.5 4 &\n" + one + " 0.2 10\nsleep 3\nwait\nexit 0\n");
   expect_exit_0(output);
   std::istringstream lines(said());
+  constexpr double kHandOver_s = 0.01;  // between a look at the clock and its line, another may run
   double last_s = 0.0;
   int count = 0;
   for (double period_s = 0.0, at_s = 0.0; lines >> period_s >> at_s; ++count) {
-    EXPECT_GE(at_s, last_s) << said();
+    EXPECT_GE(at_s, last_s - kHandOver_s) << said();
     last_s = at_s;
   }
   EXPECT_EQ(count, 14) << said();
@@ -113,7 +116,7 @@ TEST_F(AsIsGroup, AMessageOverTheLoopbackTakesWhatProcessesCompute) {
     EXPECT_GE(least_s, 0.01 * factor);
     EXPECT_LE(median_s, 0.0115 * factor);
     EXPECT_GE(timeout_s, 1.0);
-    EXPECT_LE(timeout_s, 1.0 + 0.002 * factor);
+    EXPECT_LE(timeout_s, 1.0 + 0.005 * factor);
     std::filesystem::remove(folder_ / "port");
   }
 }
@@ -130,12 +133,12 @@ TEST_F(AsIsGroup, EachProcessHasTheDevicesOfTheUav) {
              "if child == 0:\n"
              "    begin = time.monotonic()\n"
              "    time.sleep(0.3)\n"
-             "    print('child', time.monotonic() - begin, flush=True)\n"
+             "    os.write(1, f'child {time.monotonic() - begin}\\n'.encode())\n"
              "    os._exit(0)\n"
              "s.settimeout(2.0)\n"
              "n, begin = 0, time.monotonic()\n"
              "while time.monotonic() - begin < 0.4: n += len(s.recv(1000)) > 0\n"
-             "print('messages', n, flush=True)\n"
+             "os.write(1, f'messages {n}\\n'.encode())\n"
              "os.waitpid(child, 0)\n");
   const Output output = fly("python3 " + (folder_ / "link.py").string() + " &\n" + "sleep 0.6\n" +
                             std::string(CAMERA_PROGRAM) + "\nwait $!\n");
@@ -203,7 +206,7 @@ TEST_F(AsIsGroup, ProgramsThatAreStoppedSeeNoGap) {
              "    now = time.monotonic()\n"
              "    back, last = back + (now < last), now\n"
              "    if s: n += len(s.recv(1000)) > 0; s.sendto(b'x', peer); time.sleep(0.001)\n"
-             "print('back', back, n, flush=True)\n");
+             "os.write(1, f'back {back} {n}\\n'.encode())\n");
   const Output output =
       fly("python3 " + (folder_ / "link.py").string() + " &\n" + WAITS_PROGRAM + "\nwait\nexit 0\n",
           1.0, 20, "clock = \"wall\"\nreal_time_factor = 0.4\n");
