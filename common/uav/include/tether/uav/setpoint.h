@@ -125,8 +125,8 @@ inline constexpr Duration kLongestTrajectory = std::chrono::hours(1);
 /// wait in a loop: {"refused_commands": 20, "uncharged_ms": 0, "others_ms": 0, "clock_read_hz": 0},
 /// the times in execution time.
 inline constexpr const char* kClientReport = "client_report";
-inline constexpr double kPollingClock_hz =
-    20e3;  ///< no program reads it so often for anything else
+/// No program reads its clock so often for anything but to wait.
+inline constexpr double kPollingClock_hz = 20e3;
 
 /// What a flight controller does when no command has arrived for too long.
 enum class LossAction {
