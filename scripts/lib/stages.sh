@@ -5,6 +5,8 @@ stage_names=()
 stage_seconds=()
 began=$SECONDS
 declare -A beside_pids=()
+# Of the system tests; see scripts/test.
+failed_beside_others=
 
 # begin_stages: forgets the results of an earlier run, and has the summary printed at the end of this one.
 begin_stages() {
@@ -29,9 +31,10 @@ beside() {
   beside_pids[$1]=$!
 }
 
-# await NAME: prints what that command printed, and fails if it failed.
+# await NAME: prints what that command printed, and fails if it failed. Once awaited, it does nothing.
 await() {
-  local pid="${beside_pids[$1]}" status=0
+  local pid="${beside_pids[$1]:-}" status=0
+  [ -n "$pid" ] || return 0
   wait "$pid" || status=$?
   unset "beside_pids[$1]"
   cat "$ROOT/build/$1.log"
@@ -74,6 +77,7 @@ summary() {
     printf '\n\033[1m== Skipped\033[0m\n'
     awk -F '\t' '$2 == "skipped" { print $3 ": " $4 }' "$ROOT/build/test-cases.tsv"
   fi
+  [ -z "$failed_beside_others" ] || printf '\n\033[1m== Failed beside other tests, and ran once more\033[0m\n%s\n' "$failed_beside_others"
   echo
   awk -F '\t' '{ ++n[$2] } END { printf "%d passed, %d failed, %d skipped\n", n["passed"], n["failed"], n["skipped"] }' \
     "$ROOT/build/test-cases.tsv"
