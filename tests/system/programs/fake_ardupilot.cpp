@@ -7,7 +7,7 @@
 // of each step. MAVLink goes to the port of --serial0; what has come from there is taken after a
 // state. After two seconds, it has a position. Its parameters are those of the file --defaults.
 // FAKE_END = N: it exits with code 7 after N s of its time; FAKE_UNFIT = 1: it never can be armed;
-// FAKE_SERVOS = N: it has so many.
+// FAKE_SERVOS = N: it has so many; FAKE_VERSION = N: the number of its version.
 #include "fake_flight.h"
 
 #include <cmath>
@@ -144,7 +144,9 @@ class FakeArduPilot {
     for (ssize_t size = 0; (size = ::recv(link_, bytes, sizeof bytes, MSG_DONTWAIT)) > 0;)
       for (const auto& frame :
            tether::mavlink::Decoder().push_datagram({bytes, static_cast<std::size_t>(size)})) {
-        flight_.on_companion(frame, 0x04060000, [this](int message) { report(message); });
+        flight_.on_companion(frame,
+                             static_cast<std::uint32_t>(parameter("FAKE_VERSION", 0x04060000)),
+                             [this](int message) { report(message); });
         constexpr int kRunPrearmChecks = 401;
         if (frame.message.is("COMMAND_LONG") &&
             frame.message.integer("command") == kRunPrearmChecks && is_unfit())

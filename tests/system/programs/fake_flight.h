@@ -97,7 +97,8 @@ class FakeFlight {
     told_s_ = state.now_s;
   }
 
-  /// `on_request` answers MAV_CMD_REQUEST_MESSAGE for messages but AUTOPILOT_VERSION.
+  /// `version` 0: it does not tell it. `on_request` answers MAV_CMD_REQUEST_MESSAGE for messages
+  /// but AUTOPILOT_VERSION.
   void on_companion(const mavlink::Frame& frame, std::uint32_t version,
                     const std::function<void(int)>& on_request = {}) {
     constexpr int kArm = 400, kTakeOff = 22, kLand = 21, kRequest = 512, kVersion = 148;
@@ -111,6 +112,7 @@ class FakeFlight {
     if (command == kTakeOff) goal.z = -1.5;
     if (command == kLand) is_landing_ = true;
     const auto wanted = static_cast<int>(m.number("param1"));
+    if (command == kRequest && wanted == kVersion && version == 0) return;
     if (command == kRequest && wanted == kVersion)
       tell(mavlink::Message("AUTOPILOT_VERSION").set("flight_sw_version", version));
     else if (command == kRequest && on_request)

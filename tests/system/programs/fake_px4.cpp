@@ -7,7 +7,8 @@
 // ms of real time without a message, it looks whether MISSION_CURRENT is due, once a second. It
 // flies: attitude from the gyroscopes, position from HIL_GPS and the accelerometers, and rotors
 // where its parameters (PX4_PARAM_CA_ROTOR…) say they are. PX4_PARAM_FAKE_END = N: it exits with
-// code 7 after N s of its time; PX4_PARAM_FAKE_SPIN = N: it computes without end from then on.
+// code 7 after N s of its time; PX4_PARAM_FAKE_SPIN = N: it computes without end from then on;
+// PX4_PARAM_FAKE_VERSION = N: the number of its version, 0 if it tells none.
 #include "fake_flight.h"
 
 #include <algorithm>
@@ -148,7 +149,7 @@ class FakePx4 {
     const Message& m = frame.message;
     if (m.is("TIMESYNC"))
       flight_.tell(Message("TIMESYNC").set("tc1", 1).set("ts1", m.integer("ts1")));
-    flight_.on_companion(frame, 0x011000ff);
+    flight_.on_companion(frame, static_cast<std::uint32_t>(parameter("FAKE_VERSION", 0x011000ff)));
   }
 
   void look() {

@@ -46,6 +46,9 @@ TEST_F(ArduPilotFlight, AFailureIsOneLineAndWhatToDo) {
   EXPECT_EQ(fly("path = \"build\", boot_s = 5, parameters = { FAKE_UNFIT = 1 }"), 3);
   EXPECT_THAT(said_, HasSubstr("ArduPilot of UAV 'uav1' is not ready to arm after 5 s of its time: "
                                "\"PreArm: unfit, as asked for\""));
+  // 4.4.1
+  EXPECT_EQ(fly("path = \"build\", parameters = { FAKE_VERSION = 67371264 }"), 3);
+  EXPECT_THAT(said_, HasSubstr("ArduPilot of UAV 'uav1' is version 4.4.1. Use 4.5 or later"));
   EXPECT_EQ(fly("path = \"build\", parameters = { FAKE_SERVOS = 32 }"), 3);
   EXPECT_THAT(said_, HasSubstr("sends servos in a format that is not known (72 bytes)"));
 }

@@ -67,6 +67,12 @@ TEST_F(Px4Flight, WithoutAControllerThereIsOneLineAndWhatToDo) {
                                "was asked for\""));
   EXPECT_EQ(fly("path = \"build\", boot_s = 3, parameters = { FAKE_END = 4 }"), 3);
   EXPECT_THAT(said_, HasSubstr("exited with code 7"));
+  // 1.13.3
+  EXPECT_EQ(fly("path = \"build\", boot_s = 3, parameters = { FAKE_VERSION = 17630207 }"), 3);
+  EXPECT_THAT(said_, HasSubstr("PX4 of UAV 'uav1' is version 1.13.3. Use 1.14 or later: give its "
+                               "build as 'path'"));
+  EXPECT_EQ(fly("path = \"build\", boot_s = 3, parameters = { FAKE_VERSION = 0 }"), 3);
+  EXPECT_THAT(said_, HasSubstr("has not told its version within 3 s of its time"));
   EXPECT_EQ(fly("boot_s = 3"), 2);
   EXPECT_THAT(said_, HasSubstr("path"));
 }

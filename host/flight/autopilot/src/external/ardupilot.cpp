@@ -23,6 +23,8 @@ namespace {
 
 using std::chrono::seconds;
 
+// The options and servos of older ones differ.
+constexpr Version kOldestArduPilot = {4, 5, 0};
 constexpr Duration kLongestStep = std::chrono::milliseconds(4);
 
 MotorLayout layout_of(const ExternalSettings& settings) {
@@ -110,7 +112,7 @@ class ArduPilot final : public ExternalController {
     UdpPort simulator, link;
   };
   ArduPilot(const ExternalSettings& settings, Ports&& ports)
-      : ExternalController(settings, "ArduPilot", std::move(ports.link),
+      : ExternalController(settings, "ArduPilot", kOldestArduPilot, std::move(ports.link),
                            ardupilot_command(settings, ports.simulator, ports.link)),
         motors_(layout_of(settings).motors),
         simulator_(std::move(ports.simulator)) {

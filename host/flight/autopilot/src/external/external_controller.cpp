@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <tether/base/error.h>
 #include <tether/mavlink/frame.h>
@@ -19,21 +20,21 @@ bool is_one_of(std::int64_t value, std::initializer_list<std::uint8_t> values) {
 }
 
 // Of AUTOPILOT_VERSION.
-std::string version_of(const mavlink::Message& m) {
+Version version_of(const mavlink::Message& m) {
   constexpr unsigned kMajor = 24, kMinor = 16, kPatch = 8, kByte = 0xff;
   const auto number = static_cast<std::uint32_t>(m.integer("flight_sw_version"));
-  return fmt::format("{}.{}.{}", number >> kMajor, (number >> kMinor) & kByte,
-                     (number >> kPatch) & kByte);
+  return {number >> kMajor, (number >> kMinor) & kByte, (number >> kPatch) & kByte};
 }
 
 }  // namespace
 
 ExternalController::ExternalController(const ExternalSettings& settings, std::string_view name,
-                                       UdpPort&& link, os::ChildCommand command)
+                                       Version oldest, UdpPort&& link, os::ChildCommand command)
     : settings_(settings),
       name_(fmt::format("{} of UAV '{}'", name, settings.vehicle.name)),
       link_(std::move(link)),
       program_(name_, std::move(command)),
+      oldest_(oldest),
       gimbal_(settings.vehicle.joints),
       of_gimbal_({static_cast<std::uint8_t>(settings.instance + 1), kGimbal}) {}
 
@@ -41,7 +42,25 @@ ExternalController::ExternalController(const ExternalSettings& settings, std::st
 void ExternalController::boot(const Sensed& at_rest) {
   for (booted_ = settings_.period; !has_booted(booted_); booted_ += settings_.period)
     advance(booted_, at_rest.truth, readings_of(settings_, at_rest));
+  require_version();
   sent_.clear();  // nobody was there
+}
+
+void ExternalController::require_version() const {
+  const std::string oldest = fmt::format("{}.{} or later", oldest_[0], oldest_[1]);
+  if (!version_)
+    throw Error(ErrorCode::kSetup,
+                fmt::format("{} has not told its version within {:.0f} s of its time (MAVLink's "
+                            "AUTOPILOT_VERSION). If it needs longer to boot, increase 'boot_s'; "
+                            "'path' must be a build of version {}. See its log, {}",
+                            name_, to_seconds(booted_), oldest, program_.log().string()));
+  if (*version_ < oldest_)
+    throw Error(ErrorCode::kSetup, fmt::format("{} is version {}. Use {}: give its build as 'path'",
+                                               name_, version(), oldest));
+}
+
+std::string ExternalController::version() const {
+  return version_ ? fmt::format("{}", fmt::join(*version_, ".")) : "";
 }
 
 Actions ExternalController::step(const Sensed& sensed, const std::vector<Bytes>& received) {

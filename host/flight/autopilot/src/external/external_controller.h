@@ -7,9 +7,11 @@
 #include "outbox.h"
 #include "set_down.h"
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,6 +25,9 @@ namespace tether::autopilot {
 /// Who this program is, on MAVLink.
 inline constexpr mavlink::Address kSimulator{.system = 255, .component = 190};
 
+/// Major and minor number, and patch.
+using Version = std::array<unsigned, 3>;
+
 /// What flight controllers that the user brings have in common: the program, its link to the
 /// companion, its boot on the ground, and what a step is. A class for each kind has its interface
 /// to simulators. Not thread-safe.
@@ -30,12 +35,12 @@ class ExternalController : public FlightController {
  public:
   void boot(const Sensed& at_rest) final;
   Actions step(const Sensed& sensed, const std::vector<Bytes>& received) final;
-  std::string version() const final { return version_; }
+  std::string version() const final;
 
  protected:
-  /// Starts `command`. `link` is where it sends MAVLink to.
-  ExternalController(const ExternalSettings& settings, std::string_view name, UdpPort&& link,
-                     os::ChildCommand command);
+  /// Starts `command`. `link` is where it sends MAVLink to. Versions before `oldest` do not fly.
+  ExternalController(const ExternalSettings& settings, std::string_view name, Version oldest,
+                     UdpPort&& link, os::ChildCommand command);
 
   /// It is given what the companion has sent, and has taken all of it.
   virtual void pass_on(const std::vector<Bytes>& received) = 0;
@@ -65,16 +70,19 @@ class ExternalController : public FlightController {
   static constexpr int kVersionMessage = 148;  // AUTOPILOT_VERSION
 
  private:
+  /// @throws Error(kSetup) if it has not told a version that can fly
+  void require_version() const;
   void take_datagram(Bytes datagram);
   /// Leaves what the gimbal has not taken.
   std::vector<Bytes> point_gimbal(const std::vector<Bytes>& received);
 
+  const Version oldest_;
   std::uint8_t sequence_ = 0;
   std::vector<Bytes> sent_;
   /// The vehicle's gimbal is a device of its own, beside the controller.
   Mount gimbal_;
   Outbox of_gimbal_;
-  std::string version_;
+  std::optional<Version> version_;
   Duration booted_{0};
   SetDown set_down_;
   bool is_set_down_ = false;

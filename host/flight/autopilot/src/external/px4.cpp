@@ -20,6 +20,8 @@
 namespace tether::autopilot {
 namespace {
 
+// It takes the airframe as parameters of its environment.
+constexpr Version kOldestPx4 = {1, 14, 0};
 constexpr Duration kGpsPeriod = std::chrono::milliseconds(200);
 constexpr int kSafetyArmed = 128;  // MAV_MODE_FLAG_SAFETY_ARMED
 
@@ -97,7 +99,8 @@ class Px4 final : public ExternalController {
     return ports;
   }
   Px4(const ExternalSettings& settings, Ports&& ports)
-      : ExternalController(settings, "PX4", std::move(ports.companion), px4_command(settings)),
+      : ExternalController(settings, "PX4", kOldestPx4, std::move(ports.companion),
+                           px4_command(settings)),
         simulator_(std::move(ports.simulator)),
         closed_(std::move(ports.closed)) {
     link_.set_peer(number(kOwnPort, settings));
