@@ -66,7 +66,7 @@ Result<std::unique_ptr<client::Vehicle>> Agent::connect_to_exec() const {
   client::ConnectOptions options;
   const char* const socket = std::getenv("TETHER_EXEC");
   options.exec_socket = group_ ? group_->socket() : socket == nullptr ? "" : socket;
-  options.sut_name = program_name();
+  options.sut_name = group_ ? client::kGroupAgent : program_name();
   return client::connect(std::move(options));
 }
 

@@ -38,7 +38,7 @@ GroupMember::GroupMember(std::shared_ptr<client::GroupPage> page, std::string so
 std::unique_ptr<GroupMember> GroupMember::of_environment() {
   const char* const socket = std::getenv("TETHER_EXEC");
   const std::string path = socket == nullptr ? "" : socket;
-  auto page = client::map_group_page(path.substr(0, path.rfind('/') + 1) + "page");
+  auto page = client::map_group_page(client::group_page_beside(path));
   if (!page) {
     std::fprintf(stderr, "tether: %s\n", page.failure().message.c_str());
     return nullptr;

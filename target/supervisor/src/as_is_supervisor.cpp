@@ -92,6 +92,7 @@ void AsIsSupervisor::tell_if_idle() {
 }
 
 bool AsIsSupervisor::is_fed() const {
+  if (!reads_.empty()) return true;
   return std::ranges::any_of(page_.processes(), [](const GroupPage::Process& one) {
     return one.id > 0 && (one.listens || one.sensors != 0);
   });
@@ -161,6 +162,7 @@ void AsIsSupervisor::hear() {
 
 void AsIsSupervisor::on_message(CallerId caller, link::Message message) {
   if (const auto* hello = std::get_if<link::Hello>(&message)) {
+    if (hello->sut == client::kGroupAgent) agents_.insert(caller);
     if (hello->sut == client::kGroupEvents)
       lines_[caller] = static_cast<pid_t>(hello->process);
     else
@@ -178,27 +180,81 @@ void AsIsSupervisor::on_message(CallerId caller, link::Message message) {
   if (const auto heard = unheard_.find(caller); heard != unheard_.end()) unheard_.erase(heard);
 }
 
-// A receive asks for what has arrived, for all processes.
+// A receive of the preloaded library asks for what has arrived, for all processes. What lasts may
+// not be passed on: deadlines of others would go by.
 void AsIsSupervisor::on_request(CallerId caller, link::Request request) {
+  if (const std::string reason = reason_to_refuse(caller, request.body); !reason.empty()) {
+    callers_.send(caller, link::Refusal{link::Refusal::Reason::kBadRequest, reason});
+    return;
+  }
   if (std::holds_alternative<link::ReceiveMessage>(request.body)) {
     pulls_.push_back({caller, request.sequence});
     return pull();
   }
-  auto reply = client::pass_on(*vehicle_, std::move(request.body));
+  is_known_to_be_used_ |= agents_.count(caller) == 0;
+  const auto* const read = std::get_if<link::ReadSensor>(&request.body);
+  if (read == nullptr || read->only_if_available || read->skips ||
+      read->sensor >= vehicle_->catalogue().sensors.size())
+    return answer(caller, request.sequence, std::move(request.body));
+  reads_.push_back({caller, request.sequence, *read});
+  answer_reads();
+}
+
+std::string AsIsSupervisor::reason_to_refuse(CallerId caller, const Body& body) const {
+  if (agents_.count(caller) > 0) return "";
+  if (std::holds_alternative<link::ReceiveMessage>(body))
+    return "with 'all_processes', receive() is not available. Messages of the flight controller "
+           "come to UDP port 14540";
+  const auto* const read = std::get_if<link::ReadSensor>(&body);
+  const auto& sensors = vehicle_->catalogue().sensors;
+  if (read == nullptr || read->sensor >= sensors.size() || sensors[read->sensor].rate_hz > 0.0)
+    return "";
+  return "with 'all_processes', sensor '" + sensors[read->sensor].name +
+         "', which measures on demand, cannot be read. Give it a rate (sensors in the scenario's "
+         "profile)";
+}
+
+void AsIsSupervisor::answer(CallerId caller, std::uint64_t sequence, Body body) {
+  auto reply = client::pass_on(*vehicle_, std::move(body));
   if (!reply) {
     callers_.send(caller, link::Refusal{link::Refusal::Reason::kRunEnded, reply.failure().message});
     check(reply.failure());
     return;
   }
   publish();
-  reply->sequence = request.sequence;
+  reply->sequence = sequence;
   callers_.send(caller, *reply);
+}
+
+// In the order in which they asked. Those whose measurement is not there yet wait for it.
+void AsIsSupervisor::answer_reads() {
+  for (std::size_t i = 0; i < reads_.size() && !is_over_;) {
+    link::ReadSensor now_or_never = reads_[i].what;
+    now_or_never.only_if_available = true;
+    auto reply = client::pass_on(*vehicle_, now_or_never);
+    publish();
+    if (reply && !reply->sample) {
+      ++i;
+      continue;
+    }
+    const Read read = reads_[i];
+    reads_.erase(reads_.begin() + static_cast<std::ptrdiff_t>(i));
+    if (reply) {
+      reply->sequence = read.sequence;
+      callers_.send(read.caller, *reply);
+    } else {
+      check(reply.failure());
+    }
+  }
 }
 
 void AsIsSupervisor::on_gone(CallerId caller) {
   lines_.erase(caller);
   unheard_.erase(caller);
-  std::erase_if(pulls_, [caller](const Pull& pull) { return pull.caller == caller; });
+  agents_.erase(caller);
+  const auto is_of_caller = [caller](const auto& call) { return call.caller == caller; };
+  std::erase_if(pulls_, is_of_caller);
+  std::erase_if(reads_, is_of_caller);
 }
 
 void AsIsSupervisor::tell(CallerId line, link::Reply event) {
@@ -244,12 +300,15 @@ bool AsIsSupervisor::receive(Duration timeout) {
   for (const auto& process : page_.processes())
     if (process.id > 0) wanted |= process.sensors;
   std::vector<std::string_view> names;
-  for (std::size_t i = 0; i < sensors.size() && i < 64; ++i)
-    if ((wanted >> i & 1) != 0) names.emplace_back(sensors[i].name);
+  for (std::size_t i = 0; i < sensors.size(); ++i)
+    if ((i < 64 && (wanted >> i & 1) != 0) ||
+        std::ranges::any_of(reads_, [i](const Read& read) { return read.what.sensor == i; }))
+      names.emplace_back(sensors[i].name);
   const auto received = vehicle_->receive_or_measure(timeout, names, 1);
   publish();
   if (!received && !check(received.failure())) return false;
   if (received) deliver(*received);
+  if (received && received->empty()) answer_reads();
   return received.ok();
 }
 

@@ -23,7 +23,8 @@ namespace tether::supervisor {
 
 /// The loop around the processes of one program that know nothing of Tether: one thread, on the one
 /// core that they share. Each of them registers its waits in the page, and calls the UAV through
-/// this process.
+/// this process. A program on the client library may be among them: its calls are passed on, and a
+/// read that has to wait for its measurement is one more thing for which ET goes on.
 ///
 /// When all of them wait, it asks the coordinator for what comes first: a message of the flight
 /// controller, a measurement, or the first deadline; ET goes on from there. It tells the processes
@@ -49,6 +50,12 @@ class AsIsSupervisor {
     CallerId caller;
     std::uint64_t sequence;
   };
+  using Body = decltype(link::Request::body);
+  struct Read {
+    CallerId caller;
+    std::uint64_t sequence;
+    link::ReadSensor what;
+  };
   std::optional<int> reap();
   void take_signals();
   void forget_processes();
@@ -59,6 +66,9 @@ class AsIsSupervisor {
   void hear();
   void on_message(CallerId caller, link::Message message);
   void on_request(CallerId caller, link::Request request);
+  void answer(CallerId caller, std::uint64_t sequence, Body body);
+  void answer_reads();
+  std::string reason_to_refuse(CallerId caller, const Body& body) const;
   void on_gone(CallerId caller);
   void tell(CallerId line, link::Reply event);
   void deliver(const std::vector<client::RadioMessage>& received);
@@ -82,7 +92,9 @@ class AsIsSupervisor {
   Say say_;
   std::map<CallerId, pid_t> lines_;  // to the processes, for what they wait for
   std::multiset<CallerId> unheard_;  // what they were told
+  std::set<CallerId> agents_;        // who call for the preloaded library
   std::vector<Pull> pulls_;          // to be answered when all have heard
+  std::vector<Read> reads_;          // to be answered when there is a measurement
   client::Computed computed_;        // by processes that have ended
   bool is_over_ = false, is_known_to_be_used_ = false;
   int interrupts_ = 0;

@@ -191,11 +191,12 @@ int run_as_is(const std::vector<std::string>& command, const std::string& librar
                 "--all-processes needs TETHER_CLOCK=cpu or cpu*FACTOR, and no other tether-exec "
                 "around it");
   const double factor = options->time->clock().factor;
-  auto page = client::make_group_page(folder + "/page");
+  const std::string socket = folder + "/socket";
+  auto page = client::make_group_page(client::group_page_beside(socket));
   if (!page) return fail(say, 3, page.failure().message);
   auto clock = client::make_clock_page();
   if (!clock) return fail(say, 3, clock.failure().message);
-  auto listener = client::listen_local(folder + "/socket");
+  auto listener = client::listen_local(socket);
   if (!listener) return fail(say, 3, listener.failure().message);
   Callers callers(std::move(*listener), clock->descriptor);
 
@@ -206,8 +207,7 @@ int run_as_is(const std::vector<std::string>& command, const std::string& librar
   auto vehicle = client::connect(std::move(*options));
   if (!vehicle) return fail(say, 3, vehicle.failure().message);
   ::pthread_setname_np(::pthread_self(), link::kClientThread);
-  const auto program =
-      start_command({command, environment_with(library)}, folder + "/socket", std::nullopt);
+  const auto program = start_command({command, environment_with(library)}, socket, std::nullopt);
   if (!program) return fail(say, 2, program.failure().message);
   guardian.watch(*program);
   (*page)->enter(*program);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -26,7 +27,9 @@ class AsIsGroup : public testing::Test {
     std::ostringstream text;
     text << "name = \"group\"\nworld = \"yard\"\ntime_limit_s = " << limit_s
          << "\n[[uav]]\nname = \"uav1\"\nmodel = \"hummingbird\"\nposition_m = [0.0, 0.0, 0.1]\n"
-            "flight_controller = \"built-in\"\nprofile = \"paper_streaming\"\n"
+            "flight_controller = \""
+         << flight_controller_
+         << "\"\nprofile = \"paper_streaming\"\n"
             "[sut]\ncommand = [\"/bin/bash\", \""
          << (folder_ / "start.sh").string()
          << "\"]\nas_is = true\nall_processes = true\n"
@@ -47,6 +50,7 @@ class AsIsGroup : public testing::Test {
   std::string said() const { return read_text(folder_ / "out" / "sut-uav1.log"); }
 
   TempFolder folder_;
+  std::string flight_controller_ = "built-in";
 };
 
 // Each in a process of its own: those that wait and those that compute see one clock. Each writes a
@@ -235,6 +239,51 @@ TEST_F(AsIsGroup, ProgramsThatAreStoppedSeeNoGap) {
   ASSERT_EQ(waits.size(), 36U) << said();
   std::ranges::nth_element(waits, waits.begin() + 18);
   EXPECT_LE(waits[18], 25'000) << "on a busy machine, some are late";
+}
+
+// A driver that a team writes on Tether's library, among programs that know nothing of it: what it
+// waits for delays nobody, and what it computes is charged to the program.
+TEST_F(AsIsGroup, AProgramOnTheClientLibraryReadsBesideOthers) {
+  const auto library =
+      std::filesystem::path(TETHER_EXEC_PROGRAM).parent_path().parent_path() / "lib";
+  write_text(folder_ / "driver.py", R"(
+import threading, time, tether
+vehicle = tether.connect()
+def read(sensor, count):
+    stamps_s, ages_s = [], []
+    for _ in range(count):
+        stamps_s.append(sensor.read().sampled_at_ns / 1e9)
+        ages_s.append(vehicle.now_s() - stamps_s[-1])
+    assert all(b > a for a, b in zip(stamps_s, stamps_s[1:])), stamps_s
+    # The IMU of 20 Hz has no delay; what is more is that the other thread and the other process computed.
+    assert sorted(ages_s)[count // 2] < 0.02, ages_s
+imu = threading.Thread(target=read, args=(vehicle.imu(0), 40))
+imu.start()
+read(vehicle.range(0), 50)
+imu.join()
+begin_s = vehicle.now_s()
+assert abs(begin_s + 1000 - time.monotonic()) < 0.01
+vehicle.sleep_for(0.3)
+assert 0.3 <= vehicle.now_s() - begin_s < 0.32
+vehicle.command_velocity(up_m_s=0.0)
+)");
+  write_text(folder_ / "other.py", R"(
+import time
+late_s = []
+for _ in range(150):
+    until_s = time.monotonic() + 0.013
+    time.sleep(0.013)
+    late_s.append(time.monotonic() - until_s)
+assert sorted(late_s)[75] < 0.002, late_s
+)");
+  flight_controller_ = "none";
+  const Output output =
+      fly("export PYTHONPATH=" TETHER_SOURCE_DIR "/python TETHER_CLIENT_LIBRARY=" +
+          (library / "libtether-client.so.1").string() + "\npython3 " +
+          (folder_ / "other.py").string() + " &\npython3 " + (folder_ / "driver.py").string() +
+          " || exit 1\nwait %1\n");
+  EXPECT_EQ(read_result(folder_ / "out")["suts"][0]["reached_goal"], true) << output.err << said();
+  EXPECT_EQ(audit_code(folder_ / "out"), 0);
 }
 
 TEST_F(AsIsGroup, TheEndOfTheFirstProcessEndsAll) {

@@ -298,6 +298,10 @@ Result<MappedGroupPage> map_group_page(const std::string& file) {
   return MappedGroupPage(static_cast<GroupPage*>(*memory));
 }
 
+std::string group_page_beside(std::string_view exec_socket) {
+  return std::string(exec_socket.substr(0, exec_socket.rfind('/') + 1)) + "page";
+}
+
 std::unique_ptr<TimeSource> make_group_source(GroupPage& page, double factor,
                                               GroupPage::Process* own) {
   return std::make_unique<GroupSource>(page, factor, own);

@@ -2,8 +2,11 @@
 
 #include "vehicle/cancellation.h"
 
+#include <string>
 #include <utility>
 #include <variant>
+
+#include <unistd.h>
 
 // The vehicle of a program under tether-exec. Each call takes a connection from a pool, or makes
 // one, so that threads do not wait for each other; ET is read from the shared clock page. The
@@ -43,8 +46,15 @@ Result<std::unique_ptr<Vehicle>> ConcurrentVehicle::make(const ConnectOptions& o
   if (!greeting) return greeting.failure();
   auto clock = map_clock_page(greeting->clock_page);
   if (!clock) return clock.failure();
-  return std::unique_ptr<Vehicle>(
-      new ConcurrentVehicle(std::move(caller), std::move(*greeting), std::move(*clock)));
+  MappedGroupPage group;
+  const std::string page = group_page_beside(options.exec_socket);
+  if (options.sut_name != kGroupAgent && ::access(page.c_str(), F_OK) == 0) {
+    auto mapped = map_group_page(page);
+    if (!mapped) return mapped.failure();
+    group = std::move(*mapped);
+  }
+  return std::unique_ptr<Vehicle>(new ConcurrentVehicle(std::move(caller), std::move(*greeting),
+                                                        std::move(*clock), std::move(group)));
 }
 
 Result<ConcurrentVehicle::Greeting> ConcurrentVehicle::greet(const Caller& caller) {
@@ -64,10 +74,12 @@ Result<ConcurrentVehicle::Greeting> ConcurrentVehicle::greet(const Caller& calle
   return greeting;
 }
 
-ConcurrentVehicle::ConcurrentVehicle(Caller caller, Greeting greeting, MappedClockPage clock)
+ConcurrentVehicle::ConcurrentVehicle(Caller caller, Greeting greeting, MappedClockPage clock,
+                                     MappedGroupPage group)
     : InteractingVehicle(std::move(greeting.welcome.catalogue), std::move(greeting.welcome.peers)),
       caller_(std::move(caller)),
       clock_(std::move(clock)),
+      group_(std::move(group)),
       free_running_(greeting.welcome.free_running) {
   give_back(std::move(greeting.connection));
 }
@@ -179,6 +191,7 @@ void ConcurrentVehicle::close() {
 // In free running, a reply can show that ST is behind what the page said.
 ExecTime ConcurrentVehicle::now() const {
   count_clock_read();
+  if (group_) return group_->now();
   const ExecTime now = clock_.page->now();
   if (!free_running_) return now;
   ExecTime latest = latest_.load();
@@ -195,6 +208,12 @@ Status ConcurrentVehicle::sleep_for(Duration duration) {
 }
 
 Status ConcurrentVehicle::sleep_until(ExecTime until) {
+  // The preloaded library has this sleep, as any other of the program.
+  if (group_) {
+    if (const Status good = usable(); !good) return good;
+    std::this_thread::sleep_for(until - now());
+    return ok_status();
+  }
   return status_of(interact(make_sleep(until)));
 }
 

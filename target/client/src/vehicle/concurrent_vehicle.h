@@ -12,6 +12,7 @@
 #include <vector>
 
 #include <tether/client/exec/clock_page.h>
+#include <tether/client/exec/group_page.h>
 #include <tether/client/exec/local_socket.h>
 #include <tether/client/simulated_vehicle.h>
 
@@ -19,7 +20,7 @@ namespace tether::client {
 
 /// A UAV in the simulator, reached through tether-exec. Each call has a connection of its own for
 /// as long as it lasts, from a pool that grows with the number of calls at once. Calls stamp their
-/// requests from the clock page; no thread runs here.
+/// requests from the clock page, or the group's; no thread runs here.
 class ConcurrentVehicle final : public InteractingVehicle {
  public:
   /// Connects to the socket at `options.exec_socket`.
@@ -57,7 +58,7 @@ class ConcurrentVehicle final : public InteractingVehicle {
   };
   static Result<Greeting> greet(const Caller& caller);
 
-  ConcurrentVehicle(Caller caller, Greeting greeting, MappedClockPage clock);
+  ConcurrentVehicle(Caller caller, Greeting greeting, MappedClockPage clock, MappedGroupPage group);
 
   Result<link::Reply> interact(Body body) override;
   void close() override;
@@ -72,6 +73,8 @@ class ConcurrentVehicle final : public InteractingVehicle {
 
   Caller caller_;
   MappedClockPage clock_;
+  MappedGroupPage
+      group_;  // of a program whose processes share one ET: has it in place of the clock
   bool free_running_;
   mutable std::atomic<ExecTime> latest_{};  // that `now` has shown in free running
   std::mutex mutex_;

@@ -145,6 +145,10 @@ std::unique_ptr<TimeSource> make_group_source(GroupPage& page, double factor,
 /// sequence is one of these, on a connection of its own. The process answers each with a Progress.
 /// In its Hello, the program is named so.
 inline constexpr std::string_view kGroupEvents = "tether-events";
+/// And so where the preloaded library calls for it, which has ET by itself.
+inline constexpr std::string_view kGroupAgent = "tether-agent";
+/// The file of the page, in the folder of tether-exec's socket.
+std::string group_page_beside(std::string_view exec_socket);
 enum class GroupEvent : std::uint64_t {
   kDue = 1,   ///< a deadline or a timer of it is over
   kMeasured,  ///< a sensor that wakes it has measured
