@@ -52,7 +52,8 @@ AsIsSupervisor::AsIsSupervisor(pid_t program, GroupPage& page,
       callers_(callers),
       signals_(own.signals),
       threads_(own.guardian),
-      say_(std::move(say)) {
+      say_(std::move(say)),
+      computed_(own.computed) {
   publish();
 }
 
@@ -355,10 +356,11 @@ bool AsIsSupervisor::lead() {
 
 void AsIsSupervisor::finish(int exit_code) {
   page_.forget_ended(computed_);
-  page_.add_present(computed_);
+  client::Computed all = computed_;
+  page_.add_present(all);
   static_cast<void>(vehicle_->finish(
       exit_code == 0, "the program ended with exit code " + std::to_string(exit_code),
-      client::details_of(computed_)));
+      client::details_of(all)));
 }
 
 }  // namespace tether::supervisor

@@ -35,6 +35,7 @@ class AsIsSupervisor {
   struct Own {
     const os::FileDescriptor& signals;  // a signalfd
     pid_t guardian;                     // a child
+    client::Computed& computed;         // by processes that have ended
   };
   /// `program`: a child of this process. The references must outlive it.
   AsIsSupervisor(pid_t program, client::GroupPage& page, std::unique_ptr<client::Vehicle> vehicle,
@@ -95,7 +96,7 @@ class AsIsSupervisor {
   std::set<CallerId> agents_;        // who call for the preloaded library
   std::vector<Pull> pulls_;          // to be answered when all have heard
   std::vector<Read> reads_;          // to be answered when there is a measurement
-  client::Computed computed_;        // by processes that have ended
+  client::Computed& computed_;       // by processes that have ended
   bool is_over_ = false, is_known_to_be_used_ = false;
   int interrupts_ = 0;
   bool is_pulling_ = false;

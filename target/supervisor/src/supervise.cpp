@@ -203,7 +203,8 @@ int run_as_is(const std::vector<std::string>& command, const std::string& librar
   stay_on_one_core();
   const std::string& program_name = command.front();
   options->sut_name = program_name.substr(program_name.rfind('/') + 1);
-  options->time = client::make_group_source(**page, factor);
+  client::Computed computed;
+  options->time = client::make_group_source(**page, factor, nullptr, &computed);
   auto vehicle = client::connect(std::move(*options));
   if (!vehicle) return fail(say, 3, vehicle.failure().message);
   ::pthread_setname_np(::pthread_self(), link::kClientThread);
@@ -213,7 +214,7 @@ int run_as_is(const std::vector<std::string>& command, const std::string& librar
   (*page)->enter(*program);
 
   AsIsSupervisor supervisor(*program, **page, std::move(*vehicle), factor, callers,
-                            {signals, guardian.process()}, say);
+                            {signals, guardian.process(), computed}, say);
   const auto status = supervisor.run();
   const bool has_exited = status && WIFEXITED(*status);
   if (has_exited) supervisor.finish(WEXITSTATUS(*status));

@@ -283,6 +283,8 @@ assert sorted(late_s)[75] < 0.002, late_s
           (folder_ / "other.py").string() + " &\npython3 " + (folder_ / "driver.py").string() +
           " || exit 1\nwait %1\n");
   EXPECT_EQ(read_result(folder_ / "out")["suts"][0]["reached_goal"], true) << output.err << said();
+  EXPECT_THAT(run(tether({"timing", folder_ / "out"})).out, HasSubstr("“python3 driver.py” takes"))
+      << "each process is a stage";
   EXPECT_EQ(audit_code(folder_ / "out"), 0);
 }
 

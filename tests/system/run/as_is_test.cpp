@@ -154,7 +154,7 @@ TEST_F(AsIs, ThreadsWaitForEachOtherAndForTheRun) {
   int empty = 0;
   double took_s = 0.0;
   ASSERT_TRUE(words >> empty >> took_s) << said();
-  EXPECT_GE(empty, 25);  // threads drift apart
+  EXPECT_GE(empty, 15);  // threads drift apart, more on a busy machine
   EXPECT_LE(empty, 31);
   EXPECT_NEAR(took_s, 1.0, 0.05);
 }

@@ -72,7 +72,7 @@ Run run_of(const record::Record& record, const record::SutInfo& sut) {
     Call call{.call = entry.kind == record::kSensor ? entry.sensor : entry.kind, .stages = {}};
     for (const record::StageTime& time : entry.stages)
       call.stages.push_back({time.stage, time.computing});
-    if (call.stages.empty() && !sut.concurrent)
+    if (call.stages.empty() && !sut.concurrent && entry.request_at > resumed)
       call.stages.push_back({link::stage_between(previous, call.call), entry.request_at - resumed});
     previous = call.call;
     resumed = entry.reply_at;

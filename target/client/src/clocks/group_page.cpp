@@ -64,13 +64,20 @@ thread_local Duration t_process_at_begin __attribute__((tls_model("initial-exec"
 
 class GroupSource final : public TimeSource {
  public:
-  GroupSource(GroupPage& page, double factor, GroupPage::Process* own)
-      : page_(page), factor_(factor), own_(own) {}
+  GroupSource(GroupPage& page, double factor, GroupPage::Process* own, const Computed* ended)
+      : page_(page), factor_(factor), own_(own), ended_(ended) {}
 
   computer::Clock clock() const override { return {computer::ClockKind::kCpu, factor_}; }
   Duration elapsed() const override { return last_ = times_factor(page_.used(), factor_); }
   // Of the same instant: what is computed between two looks would be charged never, or twice.
   Duration elapsed_in_children() const override { return last_; }
+  Computed computed_by_parts() const override {
+    Computed parts;
+    if (ended_ == nullptr) return parts;
+    parts = *ended_;
+    page_.add_present(parts);
+    return parts;
+  }
   Duration counted_of_thread() const override { return os::read_clock(CLOCK_THREAD_CPUTIME_ID); }
   Duration begin_to_leave_out() override {
     t_process_at_begin = os::read_clock(CLOCK_PROCESS_CPUTIME_ID);
@@ -86,6 +93,7 @@ class GroupSource final : public TimeSource {
   GroupPage& page_;
   double factor_;
   GroupPage::Process* own_;
+  const Computed* ended_;
   mutable std::atomic<Duration> last_{Duration(0)};
 };
 
@@ -303,8 +311,8 @@ std::string group_page_beside(std::string_view exec_socket) {
 }
 
 std::unique_ptr<TimeSource> make_group_source(GroupPage& page, double factor,
-                                              GroupPage::Process* own) {
-  return std::make_unique<GroupSource>(page, factor, own);
+                                              GroupPage::Process* own, const Computed* ended) {
+  return std::make_unique<GroupSource>(page, factor, own, ended);
 }
 
 }  // namespace tether::client

@@ -102,7 +102,7 @@ ExecTime SimulatedVehicle::begin_call(const Body& body) {
     return clock_->begin();
   }
   const ExecTime stamp = clock_->begin();
-  if (!free_running_) stages_.reach(stamp);
+  if (!free_running_) stages_.reach(stamp, source_->computed_by_parts());
   return stamp;
 }
 

@@ -1,6 +1,7 @@
 #include "vehicle/stage_log.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <tether/base/text.h>
 #include <tether/link/codec.h>
@@ -15,7 +16,10 @@ Failure invalid(const std::string& what) {
 }  // namespace
 
 link::StageTime& StageLog::time_of_current() {
-  const std::string stage = open_.empty() ? "" : open_.back();
+  return time_of(open_.empty() ? "" : open_.back());
+}
+
+link::StageTime& StageLog::time_of(const std::string& stage) {
   for (link::StageTime& time : times_)
     if (time.stage == stage) return time;
   return times_.emplace_back(link::StageTime{stage, Duration(0)});
@@ -24,6 +28,30 @@ link::StageTime& StageLog::time_of_current() {
 void StageLog::reach(ExecTime at) {
   time_of_current().computing += std::max(Duration(0), at - reached_);
   reached_ = at;
+}
+
+// What rounding leaves is that of the last one, so that the sum is exact.
+void StageLog::reach(ExecTime at, const Computed& parts) {
+  Computed grown;
+  Duration all{0};
+  for (const auto& [name, computed] : parts)
+    if (const Duration more = computed - parts_[name]; more > Duration(0)) {
+      grown[name] = more;
+      all += more;
+    }
+  parts_ = parts;
+  Duration left = std::max(Duration(0), at - reached_);
+  if (!parts.empty() && left == Duration(0)) return;
+  if (grown.empty() || !open_.empty() || times_.size() + grown.size() + 1 > link::kMaxStages)
+    return reach(at);
+  reached_ = at;
+  for (const auto& [name, computed] : grown) {
+    const double share = static_cast<double>(computed.count()) / static_cast<double>(all.count());
+    const Duration own(std::llround(share * static_cast<double>(left.count())));
+    time_of(name).computing += own;
+    left -= own;
+    all -= computed;
+  }
 }
 
 Duration StageLog::take(std::vector<link::StageTime>& given, const std::string& outside) {

@@ -6,6 +6,7 @@
 
 #include <tether/base/result.h>
 #include <tether/base/time.h>
+#include <tether/client/exec/computed.h>
 #include <tether/link/messages.h>
 
 namespace tether::client {
@@ -19,6 +20,9 @@ class StageLog {
   /// What was computed until `at` belongs to the innermost stage; if none is open, to what is
   /// outside of stages. Nothing if the clock went back: the request's timestamp shows that.
   void reach(ExecTime at);
+  /// The same for a program of several parts, of which each has computed so much since it began:
+  /// they are the stages, and those that have computed have their share. Without parts, as above.
+  void reach(ExecTime at, const Computed& parts);
   /// Instead of reach(), if the time is replayed: each stage that was computed under since the last
   /// call takes its time from `given`, once. `outside` names what is outside of stages; empty: not
   /// known yet. Returns the sum of what was taken, by which ET grows.
@@ -37,10 +41,12 @@ class StageLog {
 
  private:
   link::StageTime& time_of_current();
+  link::StageTime& time_of(const std::string& stage);
 
   ExecTime reached_;
   std::vector<std::string> open_;
   std::vector<link::StageTime> times_;  // an empty name: outside of stages
+  Computed parts_;                      // when it was reached
 };
 
 }  // namespace tether::client

@@ -34,6 +34,20 @@ TEST(StageLog, TheInnermostStageCounts) {
   EXPECT_EQ(log.times("a to b"), (Times{{"a to b", Duration(1)}}));
 }
 
+// CPU times, whose sum is not what the clock says: some of them was left out, or has a factor.
+TEST(StageLog, PartsOfAProgramShareTheTimeByWhatEachHasComputed) {
+  StageLog log(at(0));
+  log.reach(at(100), {{"camera", Duration(10)}, {"tracker", Duration(30)}});
+  EXPECT_EQ(log.times("a to b"), (Times{{"camera", Duration(25)}, {"tracker", Duration(75)}}));
+  log.resume(at(200));
+  log.reach(at(310), {{"camera", Duration(10)}, {"late", Duration(2)}, {"tracker", Duration(31)}});
+  EXPECT_EQ(log.times("a to b"), (Times{{"late", Duration(73)}, {"tracker", Duration(37)}}))
+      << "to the nanosecond";
+  log.resume(at(400));
+  log.reach(at(410), {{"camera", Duration(10)}, {"late", Duration(2)}, {"tracker", Duration(31)}});
+  EXPECT_EQ(log.times("a to b"), (Times{{"a to b", Duration(10)}})) << "nobody is known";
+}
+
 TEST(StageLog, ChargesNothingIfTheClockGoesBack) {
   StageLog log(at(10));
   log.reach(at(4));

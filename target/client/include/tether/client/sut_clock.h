@@ -5,6 +5,7 @@
 
 #include <tether/base/result.h>
 #include <tether/base/time.h>
+#include <tether/client/exec/computed.h>
 #include <tether/computer/clock.h>
 
 namespace tether::client {
@@ -26,6 +27,9 @@ class TimeSource {
   /// What other threads of the process have computed between hold() and elapsed_at_resume(),
   /// scaled, if that is measured and counted nowhere else.
   virtual Duration computed_beside() const { return Duration::zero(); }
+  /// What each part of the program has computed so far, in proportion to each other; empty: it has
+  /// no parts.
+  virtual Computed computed_by_parts() const { return {}; }
   /// The part of `elapsed()` that threads other than the calling one have computed.
   virtual Duration computed_by_others() const { return Duration::zero(); }
   /// The part of the last `elapsed()` that processes started by the SUT's have computed. Monotone.

@@ -138,8 +138,11 @@ Result<MappedGroupPage> map_group_page(const std::string& file);
 /// The clock of the group: `elapsed()` is used() × factor, all of it in children. `page` must
 /// outlive it.
 /// @param own this process; nullptr: it leaves out nothing
+/// @param ended what processes have computed that have ended; nullptr: it knows no parts. It must
+///   outlive the source.
 std::unique_ptr<TimeSource> make_group_source(GroupPage& page, double factor,
-                                              GroupPage::Process* own = nullptr);
+                                              GroupPage::Process* own = nullptr,
+                                              const Computed* ended = nullptr);
 
 /// What tether-exec tells a process of a program that knows nothing of Tether: a Reply whose
 /// sequence is one of these, on a connection of its own. The process answers each with a Progress.
