@@ -33,6 +33,8 @@ packages_test=(git python3 cloc libgtest-dev libgmock-dev libbenchmark-dev clang
 packages_test+=(make pkgconf mandoc)
 # What a program as it is reads its camera by (data/programs/mavlink_face_anchor.py).
 packages_test+=(python3-opencv)
+# The example of a driver for ROS 2, and its other side.
+packages_test+=(cyclonedds-dev cyclonedds-tools libfastrtps-dev)
 # The package for Python: what its programs and records need, and the checker of its types.
 packages_test+=(python3-numpy python3-zstandard mypy)
 # What notebooks use besides; large, and for `scripts/test --full` only.
