@@ -115,6 +115,16 @@ TEST_F(Disk, ThatGetsFullEndsTheRunWithItsReason) {
                    kept_);
 }
 
+// Where all processes of a program have their time.
+TEST_F(Disk, ForTemporaryFilesThatIsFullIsTheReason) {
+  const Command fly =
+      tether({"run", "--quiet", "--out", folder_ / "kept", "--", "/bin/true"}, mark_);
+  const Output output = run(on_small_disk(started_by({"env", "TMPDIR=" + disk_.string()}, fly),
+                                          disk_, 64, folder_ / "none"));
+  EXPECT_EQ(output.code, 3);
+  EXPECT_THAT(output.err, HasSubstr("/page: No space left on device"));
+}
+
 // A campaign's finished trials stay, those that found no room are reported, and it may go on.
 TEST_F(Disk, ThatGetsFullInACampaignKeepsWhatIsFinished) {
   write_hover_scenario(folder_.path(), "good");

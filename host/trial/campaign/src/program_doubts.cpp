@@ -290,8 +290,8 @@ std::string check_program(const record::Record& record, const record::SutInfo& i
     return "";
   }
   if (!sut.finished) return "";
-  return fmt::format("the program of UAV '{}' ended before it did anything with it{}{}", sut.uav,
-                     sut.outcome.empty() ? "" : ": ", sut.outcome);
+  return fmt::format("the program of UAV '{}' ended before it sent anything or read a sensor{}{}",
+                     sut.uav, sut.outcome.empty() ? "" : ": ", sut.outcome);
 }
 
 std::string unclear_times(const record::Record& record) {

@@ -125,8 +125,9 @@ TEST_F(MakeResult, ACompanionHasFlownOnlyIfItHasSentSomething) {
   TrialResult result = make(record, kReached);
   EXPECT_EQ(result.outcome, Outcome::kFailed) << "it says nothing about its computer";
   EXPECT_EQ(result.end, kEndSetupFailed);
-  EXPECT_EQ(result.reason,
-            "the program of UAV 'uav1' ended before it did anything with it: in the middle");
+  EXPECT_EQ(
+      result.reason,
+      "the program of UAV 'uav1' ended before it sent anything or read a sensor: in the middle");
   record::Interaction& read = record.interactions.emplace_back().message;
   read.uav = "uav1";
   for (const std::string_view waits : {record::kSleep, record::kReceive}) {

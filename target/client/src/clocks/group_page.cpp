@@ -47,8 +47,12 @@ Result<void*> map(const std::string& file, int flags) {
   const os::FileDescriptor descriptor(::open(file.c_str(), flags | O_RDWR | O_CLOEXEC, 0600));
   struct stat status {};
   if (!descriptor) return not_shared(file);
-  if ((flags & O_CREAT) != 0 && ::ftruncate(descriptor.get(), sizeof(GroupPage)) != 0)
-    return not_shared(file);
+  // With its memory: on a full disk, writing to it would end the process.
+  if ((flags & O_CREAT) != 0)
+    if (const int error = ::posix_fallocate(descriptor.get(), 0, sizeof(GroupPage)); error != 0) {
+      errno = error;
+      return not_shared(file);
+    }
   if (::fstat(descriptor.get(), &status) != 0 || status.st_size != off_t{sizeof(GroupPage)})
     return Failure{
         Failure::Kind::kInvalid,
