@@ -1,6 +1,6 @@
 #pragma once
 
-#include "camera_files.h"
+#include "camera/camera_files.h"
 #include "group_member.h"
 #include "port.h"
 #include "serial.h"

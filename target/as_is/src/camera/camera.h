@@ -1,6 +1,6 @@
 #pragma once
 
-#include "pixels.h"
+#include "camera/pixels.h"
 
 #include <cstddef>
 #include <cstdint>

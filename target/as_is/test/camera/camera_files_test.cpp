@@ -1,4 +1,4 @@
-#include "camera_files.h"
+#include "camera/camera_files.h"
 
 #include "camera_fixture.h"
 

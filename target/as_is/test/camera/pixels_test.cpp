@@ -1,4 +1,4 @@
-#include "pixels.h"
+#include "camera/pixels.h"
 
 #include <array>
 #include <cmath>
