@@ -95,6 +95,10 @@ void Agent::hear_camera(Camera& camera) {
   arrived_ = std::move(*image);
   camera.take_arrived();
   arrived_.reset();
+  const std::string text =
+      "has a program whose camera gives JPEG: compressing it is charged, which the camera's own "
+      "hardware does on the drone. Fly with YUYV, or with the clock cpu";
+  if (camera.is_compressing() && tell(text)) doubt(text);
 }
 
 }  // namespace tether::as_is

@@ -356,6 +356,12 @@ TEST_F(AsIsCamera, OpencvOfPythonReadsTheCameraAtItsRate) {
       "    assert ok and image.shape == (480, 640, 3) and image.mean() > 5\n"
       "    assert 0.8 < time.monotonic() - begin < 1.6, time.monotonic() - begin\n"
       "    camera.release()\n"
+      "camera = cv2.VideoCapture(0, cv2.CAP_V4L2)\n"
+      "jpeg = cv2.VideoWriter_fourcc(*'MJPG')\n"
+      "assert camera.set(cv2.CAP_PROP_FOURCC, jpeg) and camera.get(cv2.CAP_PROP_FOURCC) == jpeg\n"
+      "decoded = camera.read()[1]\n"
+      "assert cv2.absdiff(decoded, image).mean() < 6, cv2.absdiff(decoded, image).mean()\n"
+      "camera.release()\n"
       "assert not cv2.VideoCapture(1).isOpened()\n"
       "print('all went well')\n");
   EXPECT_TRUE(output.code == 0 || output.code == 3) << output.err << said();

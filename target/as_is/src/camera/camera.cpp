@@ -139,7 +139,7 @@ void Camera::describe(v4l2_capability& capability) const {
 int Camera::describe(v4l2_fmtdesc& format) const {
   if (format.type != kCapture || format.index >= pixel_formats().size()) return EINVAL;
   const PixelFormat& found = pixel_formats()[format.index];
-  format.flags = 0;
+  format.flags = found.is_compressed() ? V4L2_FMT_FLAG_COMPRESSED : 0;
   write(format.description, found.name);
   format.pixelformat = found.code;
   return 0;
@@ -249,7 +249,8 @@ void Camera::describe(std::uint32_t index, v4l2_buffer& buffer) const {
   buffer = {};
   buffer.index = index;
   buffer.type = kCapture;
-  buffer.bytesused = buffer.length = format_->image_bytes(width_px_, height_px_);
+  buffer.bytesused = own.bytes;
+  buffer.length = format_->image_bytes(width_px_, height_px_);
   buffer.flags = V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC | V4L2_BUF_FLAG_TSTAMP_SRC_SOE;
   if (own.state == State::kQueued) buffer.flags |= V4L2_BUF_FLAG_QUEUED;
   if (own.state == State::kFilled) buffer.flags |= V4L2_BUF_FLAG_DONE;
@@ -323,10 +324,11 @@ void Camera::fill(const uav::CameraSample& image) {
   filled_.push_back(index);
   if (!first_index_) first_index_ = image.index;
   const timespec stamp = shown(CLOCK_MONOTONIC, same_instant(image.sampled_at));
-  buffers_[index] = {.state = State::kFilled,
-                     .sequence = static_cast<std::uint32_t>(image.index - *first_index_),
-                     .stamp = {stamp.tv_sec, stamp.tv_nsec / 1000}};
-  format_->convert(image.rgb, width_px_, height_px_, mapped_ + index * buffer_bytes_);
+  buffers_[index] = {
+      .state = State::kFilled,
+      .sequence = static_cast<std::uint32_t>(image.index - *first_index_),
+      .bytes = format_->convert(image.rgb, width_px_, height_px_, mapped_ + index * buffer_bytes_),
+      .stamp = {stamp.tv_sec, stamp.tv_nsec / 1000}};
   constexpr std::uint64_t kOne = 1;
   static_cast<void>(TETHER_REAL(write)(owner_->signal, &kOne, sizeof kOne));
 }

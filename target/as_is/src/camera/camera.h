@@ -54,6 +54,8 @@ class Camera {
   void close(const Opener& by);
 
   bool is_streaming() const { return is_streaming_; }
+  /// Whether images are compressed for the program, as the camera's own hardware would.
+  bool is_compressing() const { return is_streaming_ && format_->is_compressed(); }
   /// Whether an image that arrives now is taken.
   bool has_room() const { return is_streaming_ && !queued_.empty(); }
   void take_arrived();
@@ -66,7 +68,7 @@ class Camera {
   enum class State { kWithProgram, kQueued, kFilled };
   struct Buffer {
     State state = State::kWithProgram;
-    std::uint32_t sequence = 0;
+    std::uint32_t sequence = 0, bytes = 0;
     timeval stamp{};
   };
 

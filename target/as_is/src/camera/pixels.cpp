@@ -1,5 +1,7 @@
 #include "camera/pixels.h"
 
+#include "camera/jpeg.h"
+
 #include <algorithm>
 #include <cstddef>
 
@@ -61,6 +63,7 @@ constexpr PixelFormat kFormats[] = {
     {V4L2_PIX_FMT_BGR24, "24-bit BGR 8-8-8", 3, &to_bgr},
     {V4L2_PIX_FMT_RGB24, "24-bit RGB 8-8-8", 3, &to_rgb},
     {V4L2_PIX_FMT_GREY, "8-bit Greyscale", 1, &to_grey},
+    {V4L2_PIX_FMT_MJPEG, "Motion-JPEG", 0, nullptr},
 };
 
 }  // namespace
@@ -71,14 +74,17 @@ std::uint32_t PixelFormat::line_bytes(int width_px) const {
 }
 
 std::uint32_t PixelFormat::image_bytes(int width_px, int height_px) const {
+  if (is_compressed()) return static_cast<std::uint32_t>(most_jpeg_bytes(width_px, height_px));
   return line_bytes(width_px) * static_cast<std::uint32_t>(height_px);
 }
 
-void PixelFormat::convert(std::span<const std::uint8_t> rgb, int width_px, int height_px,
-                          std::uint8_t* out) const {
+std::uint32_t PixelFormat::convert(std::span<const std::uint8_t> rgb, int width_px, int height_px,
+                                   std::uint8_t* out) const {
+  if (is_compressed()) return static_cast<std::uint32_t>(write_jpeg(rgb, width_px, height_px, out));
   for (int line = 0; line < height_px; ++line)
     convert_line(rgb.data() + static_cast<std::ptrdiff_t>(line) * width_px * 3, width_px,
                  out + static_cast<std::ptrdiff_t>(line) * line_bytes(width_px));
+  return image_bytes(width_px, height_px);
 }
 
 std::span<const PixelFormat> pixel_formats() {

@@ -56,7 +56,7 @@ TEST(AsIsPixels, AnOddWidthEndsWithAWholePair) {
 }
 
 TEST(AsIsPixels, AnUnknownFormatBecomesTheFirstOne) {
-  EXPECT_EQ(pixel_format(V4L2_PIX_FMT_MJPEG).code, pixel_formats().front().code);
+  EXPECT_EQ(pixel_format(V4L2_PIX_FMT_H264).code, pixel_formats().front().code);
 }
 
 }  // namespace
