@@ -113,7 +113,7 @@ void Agent::take_arrived() {
   if (is_stopped_) return hear_devices();
   if (group_) {
     tell_needs();
-    group_->listen([this](auto event, const auto& reply) { handle(event, reply); });
+    listen();
     const auto nothing = vehicle().receive(Duration(0));
     if (!nothing && nothing.failure().kind != Failure::Kind::kNothingYet) end(nothing.failure());
     return;
@@ -252,7 +252,7 @@ std::list<Agent::Wait>::iterator Agent::enter(std::optional<ExecTime> deadline,
                                               std::function<void()> interrupt) {
   Wait wait{deadline, wake_of_thread(), std::move(interrupt)};
   if (group_) {
-    group_->listen([this](auto event, const auto& reply) { handle(event, reply); });
+    listen();
     tell_needs();
     if (deadline) wait.shared = group_->page().begin_wait(process_, *deadline);
   }
@@ -266,6 +266,7 @@ void Agent::tell_needs() {
   if (is_stopped_ ? timers_.next().has_value() : !group_ && timers_.have_events()) call_leader();
   if (!group_) return;
   client::GroupPage::Process& process = group_->process();
+  if (timers_.next()) listen();  // it may wait in a way of its own for the signal of one
   process.timer = timers_.next().value_or(client::GroupPage::kNever);
   process.listens = port_.is_any();
   process.sensors = rooms_ | (port_.has_receiver() ? receiver_bit_.load() : 0);
@@ -283,6 +284,10 @@ void Agent::tell_rooms() {
                    std::ranges::find(sensors, camera.sensor(), &uav::SensorDescription::name));
   rooms_ = rooms;
   tell_needs();
+}
+
+void Agent::listen() {
+  group_->listen([this](auto event, const auto& reply) { handle(event, reply); });
 }
 
 // On the thread that hears of it. What that wakes is at work when tether-exec hears that it was

@@ -142,8 +142,11 @@ class Agent {
   /// The program uses something that this library does not bring to ET: says so, once for each, and
   /// the answer does.
   void tell_gap(const char* what);
-  /// It talks to another computer, which has the real time.
+  /// It talks to another computer, or to a program that is not under test: these have the real
+  /// time.
   void tell_outside(const sockaddr* address);
+  /// Of a group: it is about to wait for a lock of this file.
+  void tell_locked(int fd);
   /// Says something, once. False: it was said before.
   static bool tell(const std::string& line);
 
@@ -175,6 +178,8 @@ class Agent {
   void hear(std::once_flag& begins, Hear hear);
   void hear_camera(Camera& camera);
   Duration real_until(std::optional<ExecTime> until) const;
+  /// Of a group: hears what tether-exec tells this process.
+  void listen();
   void handle(client::GroupEvent event, const link::Reply& reply);
   void tell_rooms();
   /// With leading_. A thread of the program that waits for it does not wait for time: who leads
@@ -197,6 +202,8 @@ class Agent {
   void tell_if_idle();
   void tell_if_beside();
   void doubt(const std::string& text);
+  void doubt_once(const std::string& text);
+  std::vector<pid_t> all_processes() const;
   struct Patience;
   /// What all wait for: none, if nobody waits, or the first instant.
   struct Plan {

@@ -3,6 +3,7 @@
 
 #include "agent.h"
 #include "beside_source.h"
+#include "outside.h"
 #include "real.h"
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 #include <cstdio>
 #include <set>
 #include <string>
+#include <vector>
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
@@ -77,6 +79,10 @@ bool Agent::tell(const std::string& line) {
 void Agent::tell_gap(const char* what) {
   const std::string text = std::string("has a program that uses ") + what +
                            ", which follows the machine's clock: its time is not that of the run";
+  doubt_once(text);
+}
+
+void Agent::doubt_once(const std::string& text) {
   if (!tell(text)) return;
   const auto alone = leading();
   doubt(text);
@@ -88,13 +94,32 @@ void Agent::doubt(const std::string& text) {
 }
 
 void Agent::tell_outside(const sockaddr* address) {
-  const std::string other = address == nullptr ? "" : other_computer(*address);
-  if (other.empty()) return;
-  const std::string text = "has a program that talks to another computer (" + other +
-                           "), which has the real time: what it waits for there is not timed";
-  if (!tell(text)) return;
-  const auto alone = leading();
-  doubt(text);
+  if (address == nullptr) return;
+  constexpr const char* kNotTimed =
+      ", which has the real time: what it waits for there is not timed";
+  if (const std::string other = other_computer(*address); !other.empty())
+    return doubt_once("has a program that talks to another computer (" + other + ")" + kNotTimed);
+  const std::uint16_t port = port_of(address, sizeof(sockaddr_storage));
+  if (!group_ || port == 0) return;
+  const Unpaid unpaid(*source_);
+  if (listens_at(port, all_processes()) == Who::kOutside)
+    doubt_once("has a program that talks to one that it did not start, at TCP port " +
+               std::to_string(port) + kNotTimed + ". Start it with the program");
+}
+
+void Agent::tell_locked(int fd) {
+  const Unpaid unpaid(*source_);
+  if (has_locked(fd, all_processes()) == Who::kOutside)
+    doubt_once(
+        "has a program that waits for a lock of one that it did not start, which has the real "
+        "time: how long it waits is not timed");
+}
+
+std::vector<pid_t> Agent::all_processes() const {
+  std::vector<pid_t> all;
+  for (const auto& one : group_->page().processes())
+    if (const pid_t id = one.id; id > 0) all.push_back(id);
+  return all;
 }
 
 }  // namespace tether::as_is

@@ -13,6 +13,7 @@
 #include <fcntl.h>
 #include <netinet/tcp.h>
 #include <poll.h>
+#include <sys/file.h>
 #include <sys/socket.h>
 #include <sys/time.h>
 #include <sys/uio.h>
@@ -317,6 +318,17 @@ TETHER_IN_PLACE int recvmmsg(int socket, mmsghdr* messages, unsigned count, int 
   return 1;
 }
 
+TETHER_IN_PLACE int flock(int file, int operation) {
+  const int now_or_never = TETHER_REAL(flock)(file, operation | LOCK_NB);
+  Agent* const agent = tether::as_is::agent();
+  if (now_or_never == 0 || errno != EWOULDBLOCK || (operation & LOCK_NB) != 0) return now_or_never;
+  if (agent != nullptr && agent->is_in_group()) {
+    const Inside inside;
+    agent->tell_locked(file);
+  }
+  return TETHER_REAL(flock)(file, operation);
+}
+
 TETHER_IN_PLACE int dup(int fd) {
   return copied(fd, TETHER_REAL(dup)(fd));
 }
@@ -326,6 +338,11 @@ TETHER_IN_PLACE int fcntl64(int fd, int command, ...) {
   va_start(list, command);
   const long argument = va_arg(list, long);
   va_end(list);
+  if (Agent* const agent = tether::as_is::agent();
+      command == F_SETLKW && agent != nullptr && agent->is_in_group()) {
+    const Inside inside;
+    agent->tell_locked(fd);
+  }
   const int result = TETHER_REAL(fcntl64)(fd, command, argument);
   return command == F_DUPFD || command == F_DUPFD_CLOEXEC ? copied(fd, result) : result;
 }

@@ -25,15 +25,6 @@ constexpr std::uint16_t kCopy = 2;     // another descriptor of one that is ours
 constexpr std::uint16_t kSerial = 3;   // no socket
 constexpr std::uint16_t kStream = 4;   // of TCP
 
-std::uint16_t port_of(const sockaddr* address, socklen_t size) {
-  if (address == nullptr) return 0;
-  if (address->sa_family == AF_INET && size >= sizeof(sockaddr_in))
-    return ntohs(reinterpret_cast<const sockaddr_in*>(address)->sin_port);
-  if (address->sa_family == AF_INET6 && size >= sizeof(sockaddr_in6))
-    return ntohs(reinterpret_cast<const sockaddr_in6*>(address)->sin6_port);
-  return 0;
-}
-
 void set_port(sockaddr* address, std::uint16_t port) {
   if (address->sa_family == AF_INET)
     reinterpret_cast<sockaddr_in*>(address)->sin_port = htons(port);
@@ -42,6 +33,15 @@ void set_port(sockaddr* address, std::uint16_t port) {
 }
 
 }  // namespace
+
+std::uint16_t port_of(const sockaddr* address, socklen_t size) {
+  if (address == nullptr) return 0;
+  if (address->sa_family == AF_INET && size >= sizeof(sockaddr_in))
+    return ntohs(reinterpret_cast<const sockaddr_in*>(address)->sin_port);
+  if (address->sa_family == AF_INET6 && size >= sizeof(sockaddr_in6))
+    return ntohs(reinterpret_cast<const sockaddr_in6*>(address)->sin6_port);
+  return 0;
+}
 
 Port::Port() {
   own_.sin_family = AF_INET;

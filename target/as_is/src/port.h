@@ -13,6 +13,9 @@
 
 namespace tether::as_is {
 
+/// That of an address; 0: it is of no network.
+std::uint16_t port_of(const sockaddr* address, socklen_t size);
+
 /// The flight controller's UDP ports, as the program's own sockets. A socket that the program binds
 /// to the port of a companion, or sends from to that of a flight controller, is *ours*: what it
 /// sends goes to the coordinator, and what the flight controller sends is really sent to it over

@@ -30,6 +30,10 @@ constexpr Duration kBetweenForgetting = std::chrono::milliseconds(10);
 constexpr Duration kBetweenTellings = std::chrono::milliseconds(1);
 // After so long it is told that nothing was used [ET].
 constexpr Duration kIdle = std::chrono::seconds(10);
+// Who computes so much has been woken.
+constexpr Duration kLeastWoken = std::chrono::microseconds(100);
+// Once or twice, a thread can have begun to compute just after it was looked at.
+constexpr int kWakes = 3;
 // Of a wait without a deadline; then it begins again.
 constexpr Duration kForEver = std::chrono::hours(1);
 
@@ -305,7 +309,9 @@ bool AsIsSupervisor::receive(Duration timeout) {
     if ((i < 64 && (wanted >> i & 1) != 0) ||
         std::ranges::any_of(reads_, [i](const Read& read) { return read.what.sensor == i; }))
       names.emplace_back(sensors[i].name);
+  const Duration used = page_.used();
   const auto received = vehicle_->receive_or_measure(timeout, names, 1);
+  if (timeout > Duration(0)) tell_if_woken(used);
   publish();
   if (!received && !check(received.failure())) return false;
   if (received) deliver(*received);
@@ -342,6 +348,19 @@ void AsIsSupervisor::pull_now_and_then() {
 bool AsIsSupervisor::are_all_waiting() {
   const ExecTime now = page_.glance();
   return std::exchange(glanced_, now) == now && threads_.are_all_waiting(page_);
+}
+
+// They all waited, and were told nothing: who computed meanwhile was woken from outside. What the
+// kernel still accounts of those that have just begun to wait is less.
+void AsIsSupervisor::tell_if_woken(Duration used) {
+  const Duration more = page_.used() - used;
+  if (more == Duration(0) || (more < kLeastWoken && threads_.are_all_waiting(page_))) return;
+  if (++wakes_ != kWakes) return;
+  static_cast<void>(vehicle_->annotate(
+      "as_is",
+      R"({"doubt": "has a program that waited for something outside of its processes, such as a )"
+      R"(lock, another computer or a server: how long that takes depends on the simulation's )"
+      R"(speed. Start a server with the program; with --one-process, such waits are seen"})"));
 }
 
 /// Lets ET go on to what comes first.

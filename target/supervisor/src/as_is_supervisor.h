@@ -79,6 +79,7 @@ class AsIsSupervisor {
   void wake_overdue();
   bool are_all_waiting();
   bool lead();
+  void tell_if_woken(Duration used);
   Duration slice();
   void publish();
   bool check(const Failure& failure);
@@ -98,6 +99,7 @@ class AsIsSupervisor {
   std::vector<Read> reads_;          // to be answered when there is a measurement
   client::Computed& computed_;       // by processes that have ended
   bool is_over_ = false, is_known_to_be_used_ = false;
+  int wakes_ = 0;  // from outside
   int interrupts_ = 0;
   bool is_pulling_ = false;
   Duration patience_{0}, forgotten_at_{0};

@@ -288,6 +288,19 @@ assert sorted(late_s)[75] < 0.002, late_s
   EXPECT_EQ(audit_code(folder_ / "out"), 0);
 }
 
+// By real time, what is outside answers; ET goes on as fast as the simulation meanwhile.
+TEST_F(AsIsGroup, WhatIsWaitedForOutsideMakesTheAnswerDoubtful) {
+  const std::string lock = folder_ / "lock";
+  write_text(folder_ / "hold.sh",
+             "exec 9>" + lock + "\nflock -x 9\ntouch " + lock + ".held\nsleep 1\n");
+  Process holder({{"/bin/bash", (folder_ / "hold.sh").string()}, {}});
+  ASSERT_TRUE(wait_until([&] { return std::filesystem::exists(lock + ".held"); }));
+  const Output output = fly("exec 9>" + lock + "\nflock -x 9\ntimeout 0.5 sleep 9\nexit 0\n");
+  expect_exit_0(output);
+  EXPECT_THAT(read_result(folder_ / "out")["warnings"].dump(),
+              HasSubstr("waits for a lock of one that it did not start"));
+}
+
 TEST_F(AsIsGroup, TheEndOfTheFirstProcessEndsAll) {
   const std::string own = "sleep 1000." + std::to_string(::getpid());  // no other test's
   EXPECT_EQ(fly(own + " &\nsetsid " + own + "1 &\nsleep 0.1\nexit 5\n").code, 3);
