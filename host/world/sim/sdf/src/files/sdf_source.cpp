@@ -9,6 +9,7 @@
 #include "files/quiet_console.h"
 #include "files/sdf_numbers.h"
 #include "files/sdf_rules.h"
+#include "files/sdf_tree.h"
 
 #include <algorithm>
 #include <new>
@@ -99,53 +100,6 @@ int line_of_nested_name(const tinyxml2::XMLElement& element) {
   return 0;
 }
 
-void collect_names(const tinyxml2::XMLElement& element, std::set<std::string>& names) {
-  names.insert(element.Name());
-  for (const auto* child = element.FirstChildElement(); child != nullptr;
-       child = child->NextSiblingElement())
-    collect_names(*child, names);
-}
-
-/// Elements whose parts libsdformat asks for only where it has found them.
-const std::set<std::string, std::less<>> kFound = {"world",  "model",     "include",  "link",
-                                                   "visual", "collision", "geometry", "material"};
-
-/// An element's description without those parts that have parts, and none of the names, if they may
-/// be absent. The reader copies the description of each element that it reads, with all of its
-/// parts: those of a model take two megabytes.
-sdf::ElementPtr without_unused(const sdf::Element& description,
-                               const std::set<std::string>& names) {
-  auto needed = std::make_shared<sdf::Element>();
-  needed->SetName(description.GetName());
-  needed->SetRequired(description.GetRequired());
-  needed->SetDescription(description.GetDescription());
-  needed->SetCopyChildren(description.GetCopyChildren());
-  needed->SetReferenceSDF(description.ReferenceSDF());
-  for (const sdf::ParamPtr& attribute : description.GetAttributes())
-    needed->AddAttribute(attribute->GetKey(), attribute->GetTypeName(),
-                         attribute->GetDefaultAsString(), attribute->GetRequired(),
-                         attribute->GetDescription());
-  for (std::size_t i = 0; i < description.GetElementDescriptionCount(); ++i) {
-    const sdf::ElementPtr part = description.GetElementDescription(static_cast<unsigned int>(i));
-    const bool has_parts = part->GetElementDescriptionCount() > 0;
-    const bool may_lack = part->GetRequired() == "*" || part->GetRequired() == "0";
-    if (has_parts && may_lack && !names.contains(part->GetName())) continue;
-    needed->AddElementDescription(
-        has_parts && kFound.contains(part->GetName()) ? without_unused(*part, names) : part);
-  }
-  return needed;
-}
-
-/// To read a file into.
-sdf::SDFPtr empty_sdf(const tinyxml2::XMLElement* root) {
-  // What stands for a missing model, and what libsdformat makes of older versions.
-  std::set<std::string> names{"model", "link", "frame", "script", "velocity_decay"};
-  if (root != nullptr) collect_names(*root, names);
-  auto sdf = std::make_shared<sdf::SDF>();
-  sdf->Root(without_unused(*sdf_description(), names));
-  return sdf;
-}
-
 }  // namespace
 
 void refuse_by_library(const FileLocation& where) {
@@ -209,13 +163,18 @@ void SdfSource::read(const WarningSink& warn) {
   // As errors they have a place. The elements that SDF does not know are named by `check_elements`.
   config.SetWarningsPolicy(sdf::EnforcementPolicy::ERR);
   config.SetUnrecognizedElementsPolicy(sdf::EnforcementPolicy::LOG);
+  // With a reader of other formats, libsdformat leaves an <include> of what is not named .sdf
+  // alone.
+  config.RegisterCustomModelParser(
+      [](const sdf::NestedInclude&, sdf::Errors&) { return sdf::InterfaceModelPtr(); });
+  SdfTrees trees;
   for (const SdfStage::File& staged : stage_.files()) {
     sdf::Errors errors;
     bool is_read = false;
     do {
       errors.clear();
       const auto* root = stage_.root_of(staged.original);
-      parsed_ = empty_sdf(root);
+      parsed_ = trees.empty(root);
       is_read =
           ask_library({staged.original.string(), root != nullptr ? line_of_nested_name(*root) : 0},
                       [&] { return sdf::readFile(staged.copy, config, parsed_, errors); });
@@ -229,6 +188,9 @@ void SdfSource::read(const WarningSink& warn) {
       require_a_handle_for(staged.copy);
       throw Error(ErrorCode::kBadFile, {staged.original.string(), 0}, "not an SDF file");
     }
+    trees.place_included(parsed_->Root());
+    if (staged.original != file_)
+      trees.keep_model(SdfStage::as_model(staged.copy), *parsed_->Root());
   }
 }
 

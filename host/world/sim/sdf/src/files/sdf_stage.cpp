@@ -138,6 +138,25 @@ std::string name_of(const XMLElement& include) {
   return uri.substr(uri.find_last_of('/', uri.size() - 2) + 1);
 }
 
+bool is_one_model(const XMLElement& root) {
+  const XMLElement* model = root.FirstChildElement();
+  return model != nullptr && std::string_view(model->Name()) == "model" &&
+         model->NextSiblingElement() == nullptr;
+}
+
+/// Whether an <include> only names a model and places it (SdfTrees).
+bool is_placed_only(const XMLElement& include) {
+  static const std::set<std::string, std::less<>> known = {"uri", "name", "pose", "static",
+                                                           "plugin"};
+  const std::string_view parent = include.Parent()->ToElement()->Name();
+  if ((parent != "world" && parent != "model") || include.FirstAttribute() != nullptr) return false;
+  for (const XMLElement* child = include.FirstChildElement(); child != nullptr;
+       child = child->NextSiblingElement())
+    if (!known.contains(child->Name())) return false;
+  const XMLElement* name = include.FirstChildElement("name");
+  return name == nullptr || !content_of(name).empty();
+}
+
 /// What a world can go without.
 constexpr std::array<std::string_view, 5> kDispensableParts = {"visual", "collision", "light",
                                                                "sensor", "joint"};
@@ -151,7 +170,8 @@ SdfStage::SdfStage(const fs::path& file, const ModelPath& path, const WorldOptio
 }
 
 std::string SdfStage::original_of(const std::string& copy) const {
-  const auto file = std::ranges::find(files_, fs::path(copy), &File::copy);
+  const auto file =
+      std::ranges::find(files_, fs::path(copy).replace_extension(".sdf"), &File::copy);
   return file != files_.end() ? file->original.string() : copy;
 }
 
@@ -193,6 +213,7 @@ fs::path SdfStage::stage(const fs::path& file) {
   open_.erase(file);
   const fs::path copy = folder_ / (std::to_string(files_.size()) + ".sdf");
   write(copy, document);
+  fs::create_symlink(copy, as_model(copy));
   files_.push_back({file, copy});
   return copy;
 }
@@ -243,7 +264,9 @@ void SdfStage::resolve(const fs::path& file, XMLElement& include) {
                     "); a model cannot include itself")
         .about(describe_include(include));
   }
-  uri->SetText(stage(found).c_str());
+  const fs::path copy = stage(found);
+  const bool is_plain = is_one_model(*root_of(found.string())) && is_placed_only(include);
+  uri->SetText((is_plain ? as_model(copy) : copy).c_str());
 }
 
 /// The SDF file that an <include> means; empty if it is not there and may be replaced.

@@ -35,6 +35,10 @@ class SdfStage {
   };
   /// Each file behind those that it includes: the file itself comes last.
   const std::vector<File>& files() const { return files_; }
+  /// What the URI of an <include> names that only places the model of this copy; the same file.
+  static std::filesystem::path as_model(std::filesystem::path copy) {
+    return copy.replace_extension(".model");
+  }
   /// The original of a copy; other paths as they are.
   std::string original_of(const std::string& copy) const;
   /// Leaves the innermost element of that name on a line out of a copy, with the visual, collision,
