@@ -10,12 +10,14 @@
 #include <tether/sim_sdf/load_world.h>
 
 /// SDF to the scene that back ends get, and on to the embedded simulator's model of it, which flies
-/// some steps. Input: a world's file where it has a <world>, else a UAV's; it may include the other
-/// files of its folder and name its meshes.
+/// some steps. Input: a world's file where it has a <world>, URDF where it has a <robot>, else a
+/// UAV's file; it may include the other files of its folder and name its meshes.
 namespace tether::fuzz {
 namespace {
 
 constexpr const char* kWorld = "<sdf version='1.7'><world name='w'/></sdf>";
+constexpr const char* kRobot = R"(<sdf version='1.7'><world name='w'><include>
+<uri>input.urdf</uri></include></world></sdf>)";
 constexpr const char* kBox = R"(<sdf version='1.7'><model name='box'><link name='link'>
 <collision name='c'><geometry><box><size>1 1 1</size></box></geometry></collision>
 </link></model></sdf>)";
@@ -124,6 +126,10 @@ void fly(sim::Simulator& simulator) {
 sim::WorldRequest request(const InputFolder& folder, Bytes input) {
   const std::string text = text_of(input);
   if (text.find("<world") != std::string::npos) return {folder.write("input.sdf", text), {}, {}};
+  if (text.find("<robot") != std::string::npos) {
+    folder.write("input.urdf", text);
+    return {folder.path() / "robot.sdf", {}, {}};
+  }
   return {folder.path() / "world.sdf", {{"uav", folder.write("input.sdf", text), {}, 0.5}}, {}};
 }
 
@@ -134,6 +140,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace tether;
   static const fuzz::InputFolder folder;
   static const auto written = {folder.write("world.sdf", std::string_view(fuzz::kWorld)),
+                               folder.write("robot.sdf", std::string_view(fuzz::kRobot)),
                                folder.write("models/box/model.sdf", std::string_view(fuzz::kBox)),
                                folder.write("tetra.obj", std::string_view(fuzz::kMesh))};
   (void)written;

@@ -92,7 +92,8 @@ class ByteWriter {
   std::string bytes_;
 };
 
-/// Reads what a ByteWriter wrote. @throws std::out_of_range where the bytes end too early.
+/// Reads what a ByteWriter wrote. @throws std::out_of_range where the bytes end too early, or
+/// are none of their type's.
 class ByteReader {
  public:
   explicit ByteReader(std::string_view bytes) : bytes_(bytes) {}
@@ -102,7 +103,7 @@ class ByteReader {
 
  private:
   static void require(bool holds) {
-    if (!holds) throw std::out_of_range("too few bytes");
+    if (!holds) throw std::out_of_range("not what was written");
   }
   template <class T>
   T next() {
@@ -124,6 +125,10 @@ class ByteReader {
       if (next<bool>()) set(value);
     } else if constexpr (Pair<T>) {
       (*this)(value.first, value.second);
+    } else if constexpr (std::same_as<T, bool>) {
+      const auto byte = next<unsigned char>();
+      require(byte <= 1);
+      value = byte == 1;
     } else if constexpr (Gapless<T>) {
       require(bytes_.size() >= sizeof value);
       std::memcpy(static_cast<void*>(&value), bytes_.data(), sizeof value);
