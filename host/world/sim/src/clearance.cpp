@@ -65,6 +65,7 @@ struct ClearanceMeter::Shape {
   Pose X_BS;
   const Geometry& geometry;        ///< of the world
   std::span<const Vec3> vertices;  ///< of a mesh, in `vertices_`
+  std::uint32_t bits = 0;
   Bounds bounds{};
   std::optional<Vec3> plane_normal_S{};  ///< of a plane, which has no `bounds`
 
@@ -79,6 +80,7 @@ struct ClearanceMeter::Shape {
 /// A ball around a shape: all that is read of the many that are far away.
 struct ClearanceMeter::Ball {
   std::optional<std::size_t> body;  ///< around its origin; none: around p_WC
+  std::uint32_t bits = 0;
   Vec3 p_WC{};
   double radius_m = kInfinity;  ///< of a plane too
 };
@@ -102,7 +104,7 @@ ClearanceMeter::~ClearanceMeter() = default;
 void ClearanceMeter::add(const Link& link, const Pose& X_BL, std::optional<std::size_t> body,
                          std::string_view owner, const MeshVertices& vertices) {
   for (const Collision& collision : link.collisions) {
-    Shape shape{owner, body, X_BL * collision.X_LC, collision.geometry, {}};
+    Shape shape{owner, body, X_BL * collision.X_LC, collision.geometry, {}, collision.bits};
     if (const auto* plane = std::get_if<PlaneGeometry>(&collision.geometry)) {
       if (body) continue;  // collides with nothing
       const double length = norm(plane->normal);
@@ -112,7 +114,7 @@ void ClearanceMeter::add(const Link& link, const Pose& X_BL, std::optional<std::
       is_complete_ = is_complete_ && !shape.vertices.empty();
       if (shape.vertices.empty()) continue;
     }
-    Ball ball{.body = body};
+    Ball ball{.body = body, .bits = collision.bits};
     if (!shape.plane_normal_S) {
       shape.bounds = bounds_of(shape.at({}));
       const Vec3 centre = transform(shape.X_BS, shape.bounds.centre);
@@ -157,10 +159,10 @@ void ClearanceMeter::find_nearest(const Shape& own, std::span<const Pose> X_WB, 
         distance_between(here, around, shapes_[other], X_WB, nearest.distance_m);
     nearest = std::min(nearest, {distance_m, other});
   };
-  if (shapes_[first].body != own.body) compare_to(first);
+  if (shapes_[first].body != own.body && (balls_[first].bits & own.bits) != 0) compare_to(first);
   for (std::size_t i = 0; i < balls_.size(); ++i) {
     const Ball& ball = balls_[i];
-    if (ball.body == own.body || i == first) continue;
+    if (ball.body == own.body || i == first || (ball.bits & own.bits) == 0) continue;
     const Vec3 apart_W = around.p_WC - (ball.body ? X_WB[*ball.body].p : ball.p_WC);
     const double beyond_m = nearest.distance_m + around.radius_m + ball.radius_m + kRounding_m;
     if (dot(apart_W, apart_W) <= beyond_m * beyond_m) compare_to(i);

@@ -63,6 +63,12 @@ World without_models() {
   return world;
 }
 
+World with_bits_of_floor(std::uint32_t bits) {
+  World world = world_at({0.0, 0.0, 1.0});
+  world.models[0].links[0].collisions[0].bits = bits;
+  return world;
+}
+
 const std::vector<MeterCase> kMeterCases = {
     {"Floor", world_at({0.0, 0.0, 1.0}), 0.95, "floor"},
     {"InTheFloor", world_at({0.0, 0.0, 0.0}), 0.0, "floor"},
@@ -70,6 +76,8 @@ const std::vector<MeterCase> kMeterCases = {
     {"BelowAPlane", with_collision(PlaneGeometry{{0.0, 0.0, -1.0}, 1.0, 1.0}), 0.0, "floor"},
     {"AnotherUav", with_second_uav(), 0.6, "beta"},
     {"UnknownMesh", with_collision(MeshGeometry{}), std::nullopt, ""},
+    {"OneBitInCommon", with_bits_of_floor(0x10100), 0.95, "floor"},
+    {"NoBitInCommon", with_bits_of_floor(0x10000), std::nullopt, ""},
     {"NothingElse", without_models(), std::nullopt, ""},
 };
 

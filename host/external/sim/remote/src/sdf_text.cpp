@@ -102,10 +102,13 @@ std::string sdf(const Visual& visual) {
 
 std::string sdf(const Collision& collision) {
   const std::string mu = text(collision.friction);
+  const std::string mask = element("collide_bitmask", std::to_string(collision.bits));
+  const std::string contact = collision.bits == Collision{}.bits ? "" : element("contact", mask);
   return named("collision", collision.name,
                element("pose", text(collision.X_LC)) + sdf_geometry(collision.geometry) +
-                   element("surface", element("friction", element("ode", element("mu", mu) +
-                                                                             element("mu2", mu)))));
+                   element("surface",
+                           contact + element("friction", element("ode", element("mu", mu) +
+                                                                            element("mu2", mu)))));
 }
 
 /// The centre of mass lies in B's origin: load_world requires it.

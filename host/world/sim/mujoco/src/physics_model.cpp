@@ -32,8 +32,9 @@ class PhysicsXml {
     for (const Collision& collision : link.collisions) {
       const std::string shape = describe(collision, X * collision.X_LC, is_static);
       if (shape.empty()) continue;
-      append(R"(<geom {} contype="{}" conaffinity="1" friction="{} 0.005 0.0001"/>)", shape,
-             may_be_pushed ? 1 : 0, std::min(collision.friction, kMostFriction));
+      append(R"(<geom {} contype="{}" conaffinity="{}" friction="{} 0.005 0.0001"/>)", shape,
+             may_be_pushed ? collision.bits : 0, collision.bits,
+             std::min(collision.friction, kMostFriction));
     }
   }
 

@@ -47,6 +47,13 @@ World world_with_fall(double fall_m_s) {
   return world;
 }
 
+World with_bits_of_wall(std::uint32_t bits) {
+  World world = world_with_wall();
+  for (Model& model : world.models)
+    if (model.name == "wall") model.links[0].collisions[0].bits = bits;
+  return world;
+}
+
 struct ContactCase {
   std::string name;
   World world;
@@ -80,6 +87,8 @@ TEST_P(MujocoContactsTest, ReportsWhatWasHitAndHowHard) {
 const std::vector<ContactCase> kContactCases = {
     {"Hovering", world_with_wall(), {}, "", 0.0, 0.0},
     {"IntoAWall", world_with_wall(), {4.0, 0.0, 0.0}, "wall", 4.0, 0.2},
+    {"IntoAWallWithABitInCommon", with_bits_of_wall(0x10100), {4.0, 0.0, 0.0}, "wall", 4.0, 0.2},
+    {"ThroughAWallWithoutABitInCommon", with_bits_of_wall(0x10000), {4.0, 0.0, 0.0}, "", 0.0, 0.0},
     {"AlongAWall",
      world_from(world_with_wall(), {4.69, 0.0, 1.0}),
      {0.1, 2.0, 0.0},

@@ -56,7 +56,7 @@ TEST(PhysicsModelTest, EveryShapeIsSolid) {
   for (int i = 0; i < 6; ++i) {
     EXPECT_EQ(model->geom_type[i], types[i]);
     EXPECT_EQ(model->geom_contype[i], 0);
-    EXPECT_EQ(model->geom_conaffinity[i], 1);
+    EXPECT_EQ(model->geom_conaffinity[i], 0xffff);
   }
   EXPECT_EQ(model->geom_size[0], 0.5);
   EXPECT_EQ(model->geom_size[3 + 1], 1.0) << "half the cylinder's length";

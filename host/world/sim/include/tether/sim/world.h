@@ -115,6 +115,8 @@ struct Collision {
   Geometry geometry;
   double friction = 1.0;
   double intensity = 0.0;  ///< of the light of a lidar that comes back; not negative
+  /// Shapes that have none in common do not touch; of 31.
+  std::uint32_t bits = 0xffff;
 };
 
 struct Link {

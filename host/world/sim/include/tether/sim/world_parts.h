@@ -13,7 +13,7 @@ TETHER_PARTS(MeshGeometry, file, submesh, scale, is_centered, named_at, companio
 TETHER_PARTS(Material, diffuse, ambient, specular, emissive, alpha, albedo_map, repeat_x, repeat_y,
              albedo_map_at, repeat, is_double_sided, is_of_script)
 TETHER_PARTS(Visual, name, X_LV, geometry, material, cast_shadows, has_look_of_mesh, joints)
-TETHER_PARTS(Collision, name, X_LC, geometry, friction, intensity)
+TETHER_PARTS(Collision, name, X_LC, geometry, friction, intensity, bits)
 TETHER_PARTS(Link, name, X_ML, mass, X_LI, inertia, visuals, collisions)
 void each_part(auto& io, Is<DrivenPath> auto& path) {
   io(path.waypoints, path.repeats, path.delay, path.p_WO);

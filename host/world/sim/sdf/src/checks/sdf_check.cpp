@@ -41,7 +41,8 @@ const ElementTable kElements = {
     {"inertia", {"ixx", "iyy", "izz", "ixy", "ixz", "iyz"}},
     {"visual", {"pose", "geometry", "material", "cast_shadows", "transparency", "laser_retro"}},
     {"collision", {"pose", "geometry", "surface", "laser_retro"}},
-    {"surface", {"friction"}},
+    {"surface", {"friction", "contact"}},
+    {"contact", {"collide_bitmask"}},
     {"friction", {"ode"}},
     {"ode", {"mu"}},
     {"geometry", {"empty", "box", "cylinder", "sphere", "capsule", "ellipsoid", "plane", "mesh"}},
@@ -198,8 +199,7 @@ void check_value(const SdfSource& source, const sdf::ElementPtr& element) {
   if (!is_numeric(element)) return;
   const std::string text = element->GetValue()->GetAsString();
   const auto numbers = parse_numbers(text);
-  if (!numbers) refuse(source, element, "is '" + text + "'; it must be numbers, without unit");
-  check_numbers_of(source, element, *numbers, text);
+  if (numbers) check_numbers_of(source, element, *numbers, text);  // else it is hexadecimal
 }
 
 /// A model that fell for ever when its world was saved, for example.

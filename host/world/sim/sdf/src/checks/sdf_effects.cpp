@@ -64,6 +64,7 @@ const Effects kEffectOfParent = {
     {"noise", Consequence::kBehavesDifferent},
     {"ode", cannot_change(Consequence::kBehavesDifferent)},
     {"surface", cannot_change(Consequence::kBehavesDifferent)},
+    {"contact", cannot_change(Consequence::kBehavesDifferent)},
 };
 
 /// Plugins that do what Tether does itself, or only pass on what is simulated: the libraries of
@@ -134,11 +135,10 @@ bool is_as_without(const sdf::ElementPtr& element) {
   return is_same;
 }
 
-/// Whether a shape meets nothing in the simulator that the file was written for.
-bool meets_nothing(const sdf::ElementPtr& element) {
-  return element->GetName() == "contact" &&
-         (element->Get<unsigned int>("collide_bitmask", 1).first == 0 ||
-          element->Get<bool>("collide_without_contact", false).first);
+/// Whether it decides what a shape meets in the simulator that the file was written for.
+bool decides_what_is_met(const sdf::ElementPtr& element) {
+  const std::string& name = element->GetName();
+  return name == "category_bitmask" || (name == "collide_without_contact" && element->Get<bool>());
 }
 
 }  // namespace
@@ -159,7 +159,7 @@ bool says_nothing(const sdf::ElementPtr& element) {
       "atmosphere", "bounce",       "contact",      "enable_wind",   "fdir1",        "friction",
       "gravity",    "kinematic",    "max_contacts", "mu2",           "self_collide", "slip1",
       "slip2",      "soft_contact", "torsional",    "velocity_decay"};
-  return kSettings.contains(name);
+  return kSettings.contains(name) || element->GetParent()->GetName() == "contact";
 }
 
 Effect effect_without(const sdf::ElementPtr& element, SdfPurpose purpose) {
@@ -173,7 +173,7 @@ Effect effect_without(const sdf::ElementPtr& element, SdfPurpose purpose) {
   if (is_unknown)
     return can_change(name.starts_with("tether:") ? Consequence::kNoEffect
                                                   : Consequence::kBehavesDifferent);
-  if (meets_nothing(element)) return can_change(Consequence::kBehavesDifferent);
+  if (decides_what_is_met(element)) return can_change(Consequence::kBehavesDifferent);
   Effect effect = Consequence::kNoEffect;
   if (const auto of_element = kEffectOfElement.find(name); of_element != kEffectOfElement.end())
     effect = of_element->second;

@@ -71,6 +71,13 @@ double read_friction(const sdf::Collision& collision) {
   return mu ? mu->Get<double>() : Collision{}.friction;
 }
 
+/// The engine has 31.
+std::uint32_t read_bits(const sdf::Collision& collision) {
+  const sdf::ElementPtr mask =
+      find_path(collision.Element(), {"surface", "contact", "collide_bitmask"});
+  return mask ? mask->Get<unsigned int>() & 0x7fffffffU : Collision{}.bits;
+}
+
 /// <laser_retro> of the collision, else of the link's first visual that has one; else the
 /// brightness of the first visual's colour, 0 to 1.
 double read_intensity(const sdf::ElementPtr& collision, const sdf::Link& link,
@@ -161,7 +168,8 @@ Link read_link(const SdfSource& source, const sdf::Link& link, const WarningSink
                                      resolved_pose(source, collision) *
                                          offset_of_heightmap(source, collision.Geom()->Element()),
                                      *geometry, read_friction(collision),
-                                     read_intensity(collision.Element(), link, result.visuals)});
+                                     read_intensity(collision.Element(), link, result.visuals),
+                                     read_bits(collision)});
     });
   }
   return result;

@@ -102,10 +102,11 @@ TEST(SdfWarning, CanChangeAVerdictForWhatMovesSomething) {
            model_of("<gravity>false</gravity>"),
            model_of("<enable_wind>true</enable_wind>"),
            model_of("<velocity_decay><linear>0.5</linear></velocity_decay>"),
-           std::string("<model name='m'><static>true</static><link name='l'><collision name='c'>"
-                       "<geometry><box><size>1 1 1</size></box></geometry><surface><contact>"
-                       "<collide_bitmask>0</collide_bitmask></contact></surface></collision></link>"
-                       "</model>"),
+           std::string(
+               "<model name='m'><static>true</static><link name='l'><collision name='c'>"
+               "<geometry><box><size>1 1 1</size></box></geometry><surface><contact>"
+               "<category_bitmask>0</category_bitmask></contact></surface></collision></link>"
+               "</model>"),
            std::string("<plugin name='p' filename='libmoving_platform.so'/>"),
            std::string("<plugin name='p' filename='gz-sim-wind-effects-system'/>"),
            std::string("<plugin name='p' filename='gz-sim-'/>"),

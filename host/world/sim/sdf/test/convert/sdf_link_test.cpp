@@ -29,7 +29,8 @@ TEST(SdfLink, ReadsShapesAndMaterials) {
       <visual name='capsule'><geometry><capsule><radius>0.5</radius><length>2</length></capsule></geometry></visual>
       <visual name='ellipsoid'><geometry><ellipsoid><radii>1 2 3</radii></ellipsoid></geometry></visual>
       <collision name='c'><geometry><sphere><radius>0.25</radius></sphere></geometry>
-        <surface><friction><ode><mu>0.5</mu></ode></friction></surface></collision>)")),
+        <surface><friction><ode><mu>0.5</mu></ode></friction>
+          <contact><collide_bitmask>0x02</collide_bitmask></contact></surface></collision>)")),
                             {},
                             {}});
   EXPECT_THAT(loaded.warnings, IsEmpty());
@@ -57,6 +58,7 @@ TEST(SdfLink, ReadsShapesAndMaterials) {
   EXPECT_EQ(std::get<CapsuleGeometry>(link.visuals[3].geometry).radius_m, 0.5);
   EXPECT_EQ(std::get<EllipsoidGeometry>(link.visuals[4].geometry).radii_m, (Vec3{1, 2, 3}));
   EXPECT_EQ(link.collisions.at(0).friction, 0.5);
+  EXPECT_EQ(link.collisions.at(0).bits, 2U);
 }
 
 TEST(SdfLink, ReadsWhetherASubmeshIsCentered) {
