@@ -185,6 +185,9 @@ World read_world(const SdfSource& source, const WarningSink& warn) {
   for (std::uint64_t i = 0; i < sdf_world.LightCount(); ++i) {
     world.lights.push_back(read_light(source, *sdf_world.LightByIndex(i), {}));
   }
+  for (auto road = sdf_world.Element()->FindElement("road"); road;
+       road = road->GetNextElement("road"))
+    if (auto model = read_road(source, road, warn)) world.models.push_back(std::move(*model));
   read_scene(sdf_world.Scene(), world);
   apply_state(source, world);
   return world;

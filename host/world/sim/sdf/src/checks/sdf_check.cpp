@@ -106,7 +106,8 @@ const ElementTable kElements = {
 /// Elements that only a world or only a UAV's model may have.
 const ElementTable kWorldElements = {
     {"link", {"light"}},
-    {"world", {"wind"}},
+    {"world", {"wind", "road"}},
+    {"road", {"width", "point", "material"}},
     {"wind", {"linear_velocity"}},
     {"geometry", {"cone", "polyline", "heightmap"}},
     {"cone", {"radius", "length"}},

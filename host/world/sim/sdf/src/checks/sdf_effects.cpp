@@ -23,7 +23,6 @@ constexpr Effect can_change(Consequence what) {
 const Effects kEffectOfElement = {
     {"actor", Consequence::kMissing},
     {"population", Consequence::kMissing},
-    {"road", Consequence::kMissing},
     // Both hide what is behind them.
     {"fog", can_change(Consequence::kLooksDifferent)},
     {"particle_emitter", can_change(Consequence::kLooksDifferent)},

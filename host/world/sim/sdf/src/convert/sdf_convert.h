@@ -44,9 +44,9 @@ sdf::ElementPtr find_path(sdf::ElementPtr element, std::initializer_list<const c
 /// ".dae" of "a.DAE".
 std::string extension_of(const std::filesystem::path& file);
 
-/// The material of a visual, whose geometry `out` has: of its <material>, of a material script that
-/// this names, else of the file of its mesh.
-void read_look(const SdfSource& source, const sdf::Visual& visual, const WarningSink& warn,
+/// The material of a visual, whose geometry `out` has: of its <material>, if there is one, of a
+/// material script that this names, else of the file of its mesh.
+void read_look(const SdfSource& source, const sdf::Material* material, const WarningSink& warn,
                Visual& out);
 
 /// A cone, polylines or a heightmap of a <geometry>; none: it is another shape, or is left out.
@@ -58,6 +58,10 @@ uav::Pose offset_of_heightmap(const SdfSource& source, const sdf::ElementPtr& ge
 /// A <heightmap> has its textures in itself.
 void read_look_of_heightmap(const SdfSource& source, const sdf::ElementPtr& heightmap,
                             const WarningSink& warn, const MeshGeometry& mesh, Material& look);
+
+/// A <road> of the world, which nothing touches; none, with a warning, if it is no strip.
+std::optional<Model> read_road(const SdfSource& source, const sdf::ElementPtr& road,
+                               const WarningSink& warn);
 
 /// One link, with its visuals and collisions.
 Link read_link(const SdfSource& source, const sdf::Link& link, const WarningSink& warn);

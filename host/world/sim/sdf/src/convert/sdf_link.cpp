@@ -149,7 +149,8 @@ Link read_link(const SdfSource& source, const sdf::Link& link, const WarningSink
           resolved_pose(source, visual) * offset_of_heightmap(source, visual.Geom()->Element());
       out.geometry = *geometry;
       out.cast_shadows = visual.CastShadows();
-      read_look(source, visual, warn, out);
+      read_look(source, visual.Material(), warn, out);
+      out.material.alpha *= 1.0 - double{visual.Transparency()};
       const sdf::ElementPtr heightmap = visual.Geom()->Element()->FindElement("heightmap");
       if (heightmap && out.has_look_of_mesh) {
         out.has_look_of_mesh = false;

@@ -156,14 +156,12 @@ bool read_material(const SdfSource& source, const sdf::Material& given, const Wa
 
 }  // namespace
 
-void read_look(const SdfSource& source, const sdf::Visual& visual, const WarningSink& warn,
+void read_look(const SdfSource& source, const sdf::Material* material, const WarningSink& warn,
                Visual& out) {
-  const bool is_given =
-      visual.Material() != nullptr && read_material(source, *visual.Material(), warn, out.material);
+  const bool is_given = material != nullptr && read_material(source, *material, warn, out.material);
   const auto* const mesh = std::get_if<MeshGeometry>(&out.geometry);
   out.has_look_of_mesh = !is_given && mesh != nullptr && mesh->made == nullptr;
   if (out.has_look_of_mesh) out.material.diffuse_rgb = out.material.ambient_rgb = {1.0, 1.0, 1.0};
-  out.material.alpha *= 1.0 - double{visual.Transparency()};
 }
 
 }  // namespace tether::sim

@@ -9,8 +9,8 @@
 
 #include <tether/os/text_file.h>
 
-// Shapes that are meshes of Tether's own: cones, polylines and heightmaps. The mesh of a heightmap
-// is its picture; the other two are written as text of an OBJ file.
+// Shapes that are meshes of Tether's own: cones, polylines, roads and heightmaps. The mesh of a
+// heightmap is its picture; the others are written as text of an OBJ file.
 namespace tether::sim {
 namespace {
 
@@ -19,13 +19,18 @@ using uav::Vec3;
 /// An OBJ file of flat faces, or of faces with a normal for each corner.
 class ObjText {
  public:
-  void add_face(const std::vector<Vec3>& corners, const std::vector<Vec3>& normals) {
+  /// For the face that is added next.
+  void add_texture_corner(double u, double v) { text_ += fmt::format("vt {:f} {:f}\n", u, v); }
+  void add_face(const std::vector<Vec3>& corners, const std::vector<Vec3>& normals,
+                bool has_texture = false) {
     std::string face = "f";
     for (std::size_t i = 0; i < corners.size(); ++i) {
       const auto [x, y, z] = corners[i];
       const auto [nx, ny, nz] = normals[i % normals.size()];
       text_ += fmt::format("v {:f} {:f} {:f}\nvn {:f} {:f} {:f}\n", x, y, z, nx, ny, nz);
-      face += fmt::format(" {0}//{0}", ++corners_);
+      ++corners_;
+      face +=
+          has_texture ? fmt::format(" {0}/{0}/{0}", corners_) : fmt::format(" {0}//{0}", corners_);
     }
     text_ += face + "\n";
   }
@@ -141,6 +146,28 @@ MeshGeometry read_polylines(const SdfSource& source, const sdf::ElementPtr& firs
   return obj.take("polyline", source.where(first));
 }
 
+/// A strip along the points, as wide at each, with its texture once for each width of its length.
+MeshGeometry strip_along(const std::vector<Vec3>& points, double width_m, FileLocation where) {
+  constexpr double kAboveGround_m = 0.01;
+  ObjText obj;
+  const auto edge = [&](std::size_t i, double side) {
+    const Vec3 along = points[std::min(i + 1, points.size() - 1)] - points[i > 0 ? i - 1 : 0];
+    const double length = std::max(std::hypot(along.x, along.y), 1e-9);
+    const double beside = side * 0.5 * width_m / length;
+    return points[i] + Vec3{-beside * along.y, beside * along.x, kAboveGround_m};
+  };
+  double from = 0.0;
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+    const double to = from + norm(points[i + 1] - points[i]) / width_m;
+    for (const auto& [u, v] : {std::pair(0, from), {1, from}, {1, to}, {0, to}})
+      obj.add_texture_corner(u, v);
+    obj.add_face({edge(i, 1.0), edge(i, -1.0), edge(i + 1, -1.0), edge(i + 1, 1.0)}, {{0, 0, 1}},
+                 true);
+    from = to;
+  }
+  return obj.take("road", std::move(where));
+}
+
 std::optional<MeshGeometry> read_heightmap(const SdfSource& source, const sdf::ElementPtr& heights,
                                            const WarningSink& warn) {
   const sdf::ElementPtr uri = heights->FindElement("uri");
@@ -177,6 +204,36 @@ std::optional<MeshGeometry> read_made_shape(const SdfSource& source,
   if (const auto heights = geometry->FindElement("heightmap"))
     return read_heightmap(source, heights, warn);
   return std::nullopt;
+}
+
+std::optional<Model> read_road(const SdfSource& source, const sdf::ElementPtr& road,
+                               const WarningSink& warn) {
+  std::vector<Vec3> points;
+  for (sdf::ElementPtr point = road->FindElement("point"); point;
+       point = point->GetNextElement("point"))
+    points.push_back(to_vec3(point->Get<ignition::math::Vector3d>()));
+  const double width_m = road->Get<double>("width", 1.0).first;
+  if (points.size() < 2 || width_m <= 0.0) {
+    warn_at(source, road, Consequence::kMissing,
+            "needs two points and a width greater than 0; left out", warn);
+    return std::nullopt;
+  }
+  Visual visual;
+  visual.name = "road";
+  visual.geometry = strip_along(points, width_m, source.where(road));
+  visual.cast_shadows = false;
+  visual.material.diffuse_rgb = {0.33, 0.33, 0.33};  // Gazebo/Road
+  visual.material.ambient_rgb = {0.04, 0.04, 0.04};
+  sdf::Material material;
+  if (const auto element = road->FindElement("material")) {
+    (void)material.Load(element);
+    read_look(source, &material, warn, visual);
+  }
+  Model model{name_attribute(road), {}, true, {}};
+  Link& link = model.links.emplace_back();
+  link.name = "road";
+  link.visuals.push_back(std::move(visual));
+  return model;
 }
 
 uav::Pose offset_of_heightmap(const SdfSource& source, const sdf::ElementPtr& geometry) {

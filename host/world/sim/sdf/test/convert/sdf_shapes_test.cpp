@@ -56,6 +56,21 @@ TEST(SdfShapes, APolylineIsExtruded) {
   }
 }
 
+TEST(SdfShapes, ARoadIsAStripAlongItsPoints) {
+  const Loaded loaded = load_content(R"(<road name='r'><width>2</width><point>0 0 0</point>
+      <point>4 0 0</point><point>4 6 1</point><material><diffuse>1 0 0 1</diffuse></material></road>
+      <road name='short'><width>1</width><point>0 0 0</point></road>)");
+  ASSERT_EQ(loaded.warnings.size(), 1u);
+  EXPECT_EQ(loaded.warnings[0].subject, "road 'short'");
+  ASSERT_EQ(loaded.world.models.size(), 1u);
+  EXPECT_TRUE(loaded.world.models[0].links.at(0).collisions.empty());
+  const std::string text = *std::get<MeshGeometry>(only_visual(loaded)->geometry).made;
+  EXPECT_EQ(times(text, "\nf "), 2u);
+  EXPECT_THAT(text, HasSubstr("v 0.000000 1.000000 0.010000\n"));
+  EXPECT_THAT(text, HasSubstr("vt 1.000000 2.000000\n"));
+  EXPECT_EQ(only_visual(loaded)->material.diffuse_rgb, (uav::Vec3{1, 0, 0}));
+}
+
 TEST(SdfShapes, AHeightmapIsItsPicture) {
   const ScratchFolder folder;
   folder.write("h.png", "");
