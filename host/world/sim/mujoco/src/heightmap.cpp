@@ -1,8 +1,12 @@
 #include "heightmap.h"
 
 #include <algorithm>
+#include <map>
+#include <utility>
 
 #include <fmt/format.h>
+
+#include <tether/base/text.h>
 
 namespace tether::sim {
 namespace {
@@ -10,6 +14,34 @@ namespace {
 constexpr int kMostHeights = 257;  // in each direction
 
 }  // namespace
+
+bool is_heightmap(const Geometry& geometry) {
+  const auto* const mesh = std::get_if<MeshGeometry>(&geometry);
+  if (mesh == nullptr || mesh->made) return false;
+  const std::string type = lower_case(mesh->file.extension().string());
+  return type == ".png" || type == ".jpg" || type == ".jpeg";
+}
+
+Heights heights_of(const raster::Mesh& mesh) {
+  std::map<std::pair<float, float>, float> heights_m;  // by x, then y
+  for (const raster::Mesh::Vertex& vertex : mesh.vertices)
+    heights_m[{vertex.position[0], vertex.position[1]}] = vertex.position[2];
+  Heights out;
+  for (const auto& [at, height_m] : heights_m) {
+    if (at.first == heights_m.begin()->first.first) ++out.rows;
+    out.top_m = std::max(out.top_m, height_m);
+  }
+  out.columns = heights_m.size() / out.rows;
+  out.shares.resize(heights_m.size());
+  std::size_t i = 0;
+  for (const auto& [at, height_m] : heights_m) {
+    out.shares[i % out.rows * out.columns + i / out.rows] = height_m / out.top_m;
+    ++i;
+  }
+  out.half_x_m = heights_m.rbegin()->first.first;
+  out.half_y_m = heights_m.rbegin()->first.second;
+  return out;
+}
 
 std::string obj_of_heights(const raster::Texture& picture) {
   const int columns = std::clamp(picture.width_px, 2, kMostHeights);
@@ -36,7 +68,7 @@ std::string obj_of_heights(const raster::Texture& picture) {
       const int a = row * columns + column + 1;
       const int b = a + columns;
       text +=
-          fmt::format("f {0}/{0} {1}/{1} {2}/{2}\nf {0}/{0} {2}/{2} {3}/{3}\n", a, b, b + 1, a + 1);
+          fmt::format("f {0}/{0} {1}/{1} {3}/{3}\nf {1}/{1} {2}/{2} {3}/{3}\n", a, b, b + 1, a + 1);
     }
   return text;
 }

@@ -1,5 +1,6 @@
 #include "physics_model.h"
 
+#include "heightmap.h"
 #include "meshes/named_file.h"
 #include "meshes/triangle_mesh.h"
 
@@ -21,6 +22,12 @@ namespace {
 using uav::Pose;
 using uav::Vec3;
 
+// The engine has a static heightmap as a whole.
+bool is_left_to_another(const Collision& collision) {
+  return is_heightmap(collision.geometry) &&
+         std::get<MeshGeometry>(collision.geometry).piece.value_or(0) > 0;
+}
+
 // MuJoCo's MJCF, written piece by piece. Numbers are written so that they read back exactly.
 class PhysicsXml {
  public:
@@ -30,6 +37,7 @@ class PhysicsXml {
   // moving one. What may not be pushed meets what may.
   void add_collisions(const Link& link, const Pose& X, bool is_static, bool may_be_pushed) {
     for (const Collision& collision : link.collisions) {
+      if (is_static && is_left_to_another(collision)) continue;
       const std::string shape = describe(collision, X * collision.X_LC, is_static);
       if (shape.empty()) continue;
       append(R"(<geom {} contype="{}" conaffinity="{}" friction="{} 0.005 0.0001"/>)", shape,
@@ -61,6 +69,12 @@ class PhysicsXml {
                        "<asset>{}</asset><worldbody>{}</worldbody></mujoco>",
                        to_seconds(world.step), world.gravity_x_m_s2, world.gravity_y_m_s2,
                        -world.gravity_m_s2, kMaxContacts, 4 * kMaxContacts, assets_, body_);
+  }
+
+  // The engine's text has no room for them.
+  void fill_heights(mjModel& model) const {
+    for (std::size_t i = 0; i < heights_.size(); ++i)
+      std::ranges::copy(heights_[i].shares, model.hfield_data + model.hfield_adr[i]);
   }
 
  private:
@@ -106,7 +120,10 @@ class PhysicsXml {
               return shape("ellipsoid", g.radii_m.x, g.radii_m.y, g.radii_m.z);
             },
             [&](const PlaneGeometry& g) { return describe(g, X, collision, is_static); },
-            [&](const MeshGeometry& g) { return describe(g, X, collision); },
+            [&](const MeshGeometry& g) {
+              return is_static && is_heightmap(g) ? describe_heights(g, X)
+                                                  : describe(g, X, collision);
+            },
         },
         collision.geometry);
   }
@@ -139,6 +156,19 @@ class PhysicsXml {
     return fmt::format(R"(type="mesh" {} mesh="{}")", place(X), name);
   }
 
+  std::string describe_heights(const MeshGeometry& mesh, const Pose& X) {
+    constexpr double kDepth_m = 10.0;  // below height 0: what is in it is pushed up
+    MeshGeometry whole = mesh;
+    whole.piece.reset();
+    const Heights& heights = heights_.emplace_back(
+        heights_of(read_named(mesh.named_at, [&] { return mesh_files_.load(whole, {}); })));
+    const std::string name = fmt::format("h{}", heights_.size());
+    assets_ += fmt::format(R"(<hfield name="{}" nrow="{}" ncol="{}" size="{} {} {} {}"/>)", name,
+                           heights.rows, heights.columns, heights.half_x_m, heights.half_y_m,
+                           heights.top_m, kDepth_m);
+    return fmt::format(R"(type="hfield" {} hfield="{}")", place(X), name);
+  }
+
   void warn_of_shape(const MeshGeometry& mesh, const Collision& collision) const {
     constexpr double kAsWritten_m = 0.01;
     const CollisionPieces& pieces = read_named(
@@ -158,6 +188,7 @@ class PhysicsXml {
   std::string assets_;
   std::string body_;
   std::map<MeshKey, std::size_t> meshes_;
+  std::vector<Heights> heights_;
 };
 
 }  // namespace
@@ -169,7 +200,8 @@ std::vector<Shape> shapes_of(const World& world) {
     shapes.push_back({owner, static_cast<float>(collision.intensity)});
   };
   for (const FixedBody& body : fixed_bodies(world)) {
-    for (const Collision& collision : body.link->collisions) add(body.model->name, collision);
+    for (const Collision& collision : body.link->collisions)
+      if (!is_left_to_another(collision)) add(body.model->name, collision);
   }
   for (const MovingBody& body : moving_bodies(world)) {
     for (const Collision& collision : body.link->collisions) {
@@ -186,7 +218,9 @@ ModelPtr make_physics_model(const World& world, const WarningSink& warn, const M
     xml.add_collisions(*body.link, body.X_WB, true, false);
   }
   for (const MovingBody& body : moving_bodies(world)) xml.add_moving(body);
-  return compile_model(xml.text(world));
+  ModelPtr model = compile_model(xml.text(world));
+  xml.fill_heights(*model);
+  return model;
 }
 
 }  // namespace tether::sim

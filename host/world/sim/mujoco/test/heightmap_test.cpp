@@ -17,7 +17,7 @@ TEST(Heightmap, IsAsHighAsItsPictureIsBright) {
   EXPECT_THAT(text, StartsWith("v -0.500000 0.500000 0.000000\nvt 0.000000 1.000000\n"
                                "v 0.500000 0.500000 1.000000\n"));
   EXPECT_THAT(text, HasSubstr("v 0.500000 -0.500000 0.500000\nvt 1.000000 0.000000\n"
-                              "f 1/1 3/3 4/4\nf 1/1 4/4 2/2\n"));
+                              "f 1/1 3/3 2/2\nf 3/3 4/4 2/2\n"));
 }
 
 TEST(Heightmap, HasAtMost257HeightsEachWay) {

@@ -1,9 +1,12 @@
+#include "physics_model.h"
 #include "test_simulator.h"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
@@ -156,6 +159,79 @@ TEST(MeshContacts, WhatStandsOnASheetIsAtRestAlsoOnASeamAndWhateverItsFriction) 
       expect_at_rest(world_in(floor, {x_m, 0.0, 0.06}, friction));
     }
   }
+}
+
+/// 6 × 3 pixels, from black on the left to white on the right.
+constexpr std::string_view kSlope(
+    "\x89\x50\x4e\x47\x0d\x0a\x1a\x0a\x00\x00\x00\x0d\x49\x48\x44\x52\x00\x00\x00\x06\x00\x00"
+    "\x00\x03\x08\x00\x00\x00\x00\x95\x6a\x21\x27\x00\x00\x00\x12\x49\x44\x41\x54\x78\xda\x63"
+    "\x60\x30\x4e\x9b\x79\xe6\x3f\x03\x0a\x05\x00\x53\xc1\x08\xf8\x74\x23\xf2\x2a\x00\x00\x00"
+    "\x00\x49\x45\x4e\x44\xae\x42\x60\x82",
+    75);
+
+/// 2 × 2 pixels: white on the upper left and the lower right.
+constexpr std::string_view kSaddle(
+    "\x89\x50\x4e\x47\x0d\x0a\x1a\x0a\x00\x00\x00\x0d\x49\x48\x44\x52\x00\x00\x00\x02\x00\x00"
+    "\x00\x02\x08\x00\x00\x00\x00\x57\xdd\x52\xf8\x00\x00\x00\x0e\x49\x44\x41\x54\x78\xda\x63"
+    "\xf8\xcf\xc0\xc0\xf0\x1f\x00\x06\x00\x01\xff\x65\x34\xf8\xf7\x00\x00\x00\x00\x49\x45\x4e"
+    "\x44\xae\x42\x60\x82",
+    71);
+
+World world_on(const std::filesystem::path& picture, const Vec3& size_m, const Vec3& p_WB) {
+  World world = world_in(picture, p_WB);
+  std::get<MeshGeometry>(world.models[0].links[0].collisions[0].geometry).scale = size_m;
+  return world;
+}
+
+// The engine's field is the mesh that is drawn: a slope of 2 m in 10 m.
+TEST(MeshContacts, AHeightmapIsTouchedWhereItIsDrawn) {
+  const ScratchFolder folder;
+  World world =
+      world_on(folder.write("slope.png", std::string(kSlope)), {10, 6, 2}, {1.3, -0.7, 2});
+  struct Hull {
+    Geometry shape;
+    double under_m;  ///< its origin, when it touches the slope
+  };
+  for (const auto& [shape, under_m] : {Hull{SphereGeometry{0.2}, 0.2 * std::hypot(1.0, 0.2)},
+                                       Hull{CylinderGeometry{0.2, 0.1}, 0.05 + 0.2 * 0.2},
+                                       Hull{BoxGeometry{{0.4, 0.4, 0.1}}, 0.05 + 0.2 * 0.2}}) {
+    SCOPED_TRACE(shape.index());
+    world.uavs[0].body.collisions = {{"hull", {}, shape, 1.0}};
+    const auto simulator = make_simulator(world);
+    simulator->apply(0, uav::to_setpoint({{0.0, 0.0, -0.3}, 0.0}));
+    std::vector<Contact> contacts;
+    for (auto t = SimTime(1ms); contacts.empty() && t <= SimTime(8s); t += 1ms) {
+      simulator->advance_to(t);
+      contacts = simulator->take_contacts();
+    }
+    ASSERT_FALSE(contacts.empty());
+    EXPECT_EQ(contacts.front().with, "house");
+    const auto height_m = [&] {
+      const Vec3 p_W = simulator->ground_truth(0).body.p_WB;
+      return p_W.z - 0.2 * (p_W.x + 5.0);
+    };
+    EXPECT_NEAR(height_m(), under_m, 0.01);
+    simulator->advance_to(SimTime(10s));
+    EXPECT_GT(height_m(), 0.04);
+  }
+}
+
+TEST(MeshContacts, CellsOfAHeightmapHaveTheDiagonalsOfItsMesh) {
+  const ScratchFolder folder;
+  const World world =
+      world_on(folder.write("saddle.png", std::string(kSaddle)), {2, 2, 1}, {0, 0, 5});
+  const ModelPtr model = make_physics_model(world, [](const Warning&) {});
+  const DataPtr data = make_data(*model);
+  mj_forward(model.get(), data.get());
+  const auto height_m = [&](double x, double y) {
+    const std::array<mjtNum, 3> from{x, y, 3.0}, down{0.0, 0.0, -1.0};
+    int geom = -1;
+    return 3.0 - mj_ray(model.get(), data.get(), from.data(), down.data(), nullptr, 1, 1, &geom);
+  };
+  EXPECT_NEAR(height_m(-0.9, 0.9), 0.9, 1e-6);
+  EXPECT_NEAR(height_m(0.9, -0.9), 0.9, 1e-6);
+  EXPECT_NEAR(height_m(0.1, 0.1), 0.0, 1e-6);
+  EXPECT_NEAR(height_m(-0.1, 0.1), 0.1, 1e-6);
 }
 
 }  // namespace

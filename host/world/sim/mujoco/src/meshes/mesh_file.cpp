@@ -333,7 +333,7 @@ struct MeshFiles::Imported {
     }
     std::string bytes = os::read_file(mesh.file, kLargestMesh);
     std::string type = type_of(mesh.file);
-    if (type == ".png" || type == ".jpg" || type == ".jpeg") {
+    if (is_heightmap(mesh)) {
       bytes = obj_of_heights(decode_texture(bytes, mesh.file, [](const Warning&) {}));
       type = ".obj";
     }

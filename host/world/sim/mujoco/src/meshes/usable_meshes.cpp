@@ -1,5 +1,7 @@
 #include "meshes/usable_meshes.h"
 
+#include "heightmap.h"
+
 #include <map>
 #include <optional>
 #include <span>
@@ -82,7 +84,8 @@ void split_collisions(World& world, const MeshFiles& meshes) {
         if (pieces.empty()) all.push_back(collision);
         for (std::size_t i = 0; i < pieces.size(); ++i) {
           Collision& piece = all.emplace_back(collision);
-          if (const auto box = as_box(pieces[i])) {
+          const auto box = is_heightmap(collision.geometry) ? std::nullopt : as_box(pieces[i]);
+          if (box) {
             piece.X_LC = piece.X_LC * box->X_MB;
             piece.geometry = BoxGeometry{box->size_m};
           } else if (pieces.size() > 1) {
