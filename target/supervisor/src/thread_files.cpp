@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <string>
+#include <string_view>
 
 #include <fcntl.h>
 #include <sys/resource.h>
@@ -36,10 +37,38 @@ State state_in(const os::FileDescriptor& stat) {
   return std::strchr("StT", after_name[2]) != nullptr ? State::kWaits : State::kRuns;
 }
 
-bool has_threads(client::GroupPage& page, pid_t process) {
-  return std::ranges::any_of(page.threads(), [process](const client::GroupPage::Thread& thread) {
-    return thread.process == process && thread.id != 0;
+bool has_threads(client::GroupPage& page, pid_t process, pid_t except = 0) {
+  return std::ranges::any_of(page.threads(), [=](const client::GroupPage::Thread& thread) {
+    return thread.process == process && thread.id != 0 && thread.id != except;
   });
+}
+
+/// A number of a file `stat`, counted as proc(5) does; 0: there is none.
+long number_of(const os::FileDescriptor& stat, int field) {
+  constexpr int kState = 3;
+  char text[512];
+  const char* rest = read_again(stat, text) ? std::strrchr(text, ')') : nullptr;
+  if (rest != nullptr) rest = std::strchr(rest, ' ');
+  for (int i = kState; rest != nullptr && i < field; ++i) rest = std::strchr(rest + 1, ' ');
+  return rest == nullptr ? 0 : std::strtol(rest, nullptr, 10);
+}
+
+/// Whether threads of a process are left beside its first one, also if that has ended.
+bool has_others(const os::FileDescriptor& stat) {
+  constexpr int kThreads = 20;
+  return number_of(stat, kThreads) > 1;
+}
+
+bool has_buried(const os::FileDescriptor& stat) {
+  constexpr int kFaultsOfChildren = 11;
+  return number_of(stat, kFaultsOfChildren) > 0;
+}
+
+/// Whether the kernel tells where that thread sleeps (`wchan`). It does not of one that is in the
+/// queue of a core, whatever its state, nor of any if it was built without names.
+bool sleeps_somewhere(const os::FileDescriptor& where) {
+  char text[64];
+  return read_again(where, text) && std::string_view(text) != "0";
 }
 
 /// How often this thread has given its core to others.
@@ -64,7 +93,12 @@ bool ThreadFiles::are_all_waiting(client::GroupPage& page) {
     if (!files.stat) files.stat = open_file(process, id, "stat");
     const State state = state_in(files.stat);
     if (state == State::kRuns) return false;
+    if (state == State::kWaits && may_bury_child(files, process, id)) return false;
     if (state == State::kEnded) {
+      // The library has a thread that is not in the page. Who waits for the process wakes when that
+      // has ended, too.
+      if (!has_threads(page, process, id) && has_others(open_file(process, process, "stat")))
+        return false;
       files_.erase(id);
       // The first thread of a process may end before the others. After the last one nobody waits,
       // also if its parent takes its time to notice.
@@ -79,6 +113,14 @@ bool ThreadFiles::are_all_waiting(client::GroupPage& page) {
   const bool is_any_unseen = std::ranges::any_of(
       page.processes(), [](const auto& one) { return one.id > 0 && one.unseen > 0; });
   return !is_any_unseen && switches() == before;
+}
+
+// Who waits for a child is in state S also while the kernel buries the child. That takes long, and
+// may lose the core. The process `except_` always sleeps.
+bool ThreadFiles::may_bury_child(Files& files, pid_t process, pid_t id) const {
+  if (!has_buried(files.stat)) return false;
+  if (!files.where) files.where = open_file(process, id, "wchan");
+  return !sleeps_somewhere(files.where) && sleeps_somewhere(open_file(except_, except_, "wchan"));
 }
 
 // One that is not in the page has just been started, or ignores preloaded libraries.

@@ -23,8 +23,9 @@ class ThreadFiles {
 
  private:
   struct Files {
-    os::FileDescriptor stat, children;
+    os::FileDescriptor stat, children, where;
   };
+  bool may_bury_child(Files& files, pid_t process, pid_t id) const;
   bool are_known_or_waiting(const os::FileDescriptor& children, client::GroupPage& page) const;
 
   pid_t except_;
