@@ -118,6 +118,21 @@ std::map<std::string, Intervals> intervals_of(const record::Record& record, cons
   return cameras;
 }
 
+/// Until when a program that sent its last set-point at `last` should have sent more: it asks its
+/// flight controller for something else, such as a landing, or ends.
+SimTime end_of_setpoints(const record::Record& record, const std::string& uav, SimTime last) {
+  for (const auto& logged : record.autopilot) {
+    const record::AutopilotMessage& m = logged.message;
+    if (m.uav == uav && m.to_controller && m.sent_at >= last &&
+        (m.name.starts_with("COMMAND_") || m.name == "SET_MODE"))
+      return m.sent_at;
+  }
+  for (const auto& logged : record.interactions)
+    if (logged.message.uav == uav && logged.message.kind == record::kFinish)
+      return same_instant(logged.message.request_at);
+  return record.footer ? record.footer->st_at_end : last;
+}
+
 void add_setpoints(const record::Record& record, const std::string& uav, Pace& pace) {
   std::vector<double> between_s;
   std::optional<SimTime> previous;
@@ -128,7 +143,8 @@ void add_setpoints(const record::Record& record, const std::string& uav, Pace& p
     previous = m.sent_at;
   }
   if (between_s.empty()) return;
-  pace.setpoint_gap_s = std::ranges::max(between_s);
+  pace.setpoint_gap_s = std::max(std::ranges::max(between_s),
+                                 to_seconds(end_of_setpoints(record, uav, *previous) - *previous));
   const double median_s = quantile(std::move(between_s), 0.5);
   if (median_s > 0.0) pace.setpoint_hz = 1.0 / median_s;
 }

@@ -75,6 +75,14 @@ TEST(Pace, HasTheRateOfSetpoints) {
   record.autopilot.emplace_back(record.autopilot.back()).message.name = "HEARTBEAT";
   EXPECT_NEAR(pace_of(record)->setpoint_hz, 20.0, 1e-9);
   EXPECT_NEAR(pace_of(record)->setpoint_gap_s, 0.86, 1e-9);
+  record.footer.emplace().st_at_end = SimTime(milliseconds(9000));
+  EXPECT_NEAR(pace_of(record)->setpoint_gap_s, 8.0, 1e-9);
+  record.interactions.back().message.kind = record::kFinish;
+  record.interactions.back().message.request_at = ExecTime(milliseconds(6000));
+  EXPECT_NEAR(pace_of(record)->setpoint_gap_s, 5.0, 1e-9) << "until the program ends";
+  record.autopilot.back().message.name = "COMMAND_LONG";
+  record.autopilot.back().message.sent_at = SimTime(milliseconds(3000));
+  EXPECT_NEAR(pace_of(record)->setpoint_gap_s, 2.0, 1e-9) << "until it asks for something else";
 }
 
 TEST(Pace, HasTheLossesOfSetpointsOfAllPrograms) {

@@ -98,7 +98,7 @@ struct Pace {
 
   /// Set-points that the program sent by MAVLink, one over the median time between two; 0: none.
   double setpoint_hz = 0.0;
-  double setpoint_gap_s = 0.0;  ///< the longest time between two of them
+  double setpoint_gap_s = 0.0;  ///< the longest time until the next, or to the end of the flight
   /// Of all programs, while they ran: how often a flight controller waited too long for the next
   /// set-point, and did something else than to go on.
   struct Losses {
