@@ -228,6 +228,10 @@ void warn_of_losses(const sim::Sensor& sensor, const std::string& uav,
       [&](const auto& model) {
         if constexpr (requires { model.dropout_probability; })
           warn_of(model.dropout_probability, "dropout_probability", "loses");
+        if constexpr (requires { model.outage_every_s; })
+          if (model.outage_every_s > 0.0)
+            warn_of(model.outage_lasts_s / model.outage_every_s, "outage_lasts_s / outage_every_s",
+                    "has no fix in");
       },
       sensor.model);
   warn_of(sensor.driver.lost_probability, "lost_probability", "loses");

@@ -100,6 +100,18 @@ TEST_F(ResolveSensors, WarnsOfASensorThatLosesHalfOfItsMeasurements) {
                                                  HasSubstr("loses 100 % of its measurements"))));
 }
 
+TEST_F(ResolveSensors, WarnsOfAReceiverWithoutAFixInHalfOfItsMeasurements) {
+  sim::Sensor navsat = make_range("navsat");
+  navsat.model = sim::NavSatModel{.outage_every_s = 2.0, .outage_lasts_s = 0.9};
+  world_.uavs[0].sensors.push_back(navsat);
+  (void)resolve();
+  EXPECT_THAT(warnings_, testing::Not(testing::Contains(HasSubstr("fix"))));
+  std::get<sim::NavSatModel>(world_.uavs[0].sensors.back().model).outage_lasts_s = 1.9;
+  (void)resolve();
+  EXPECT_THAT(warnings_, testing::Contains(AllOf(HasSubstr("sensor 'navsat' of UAV 'uav1'"),
+                                                 HasSubstr("has no fix in 95 % of its"))));
+}
+
 TEST_F(ResolveSensors, WarnsOfASensorWhoseFirstMeasurementIsAfterTheFlight) {
   scenario_.time_limit = std::chrono::seconds(20);
   lay("late.toml",
