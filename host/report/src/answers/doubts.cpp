@@ -68,6 +68,21 @@ std::string doubt_text(const FlightsInDoubt& doubt, const ConditionVerdict& cond
          where;
 }
 
+namespace {
+
+/// Of flights that begin alike, and are no copies.
+std::string why_different(const ConditionVerdict& condition) {
+  const Speed speed = condition.pace ? condition.pace->speed : Speed{};
+  const bool repeats =
+      !speed.programs.empty() &&
+      std::ranges::all_of(speed.programs, [](const auto& one) { return one.clock.repeats(); });
+  return repeats ? " They all begin alike, and no time is measured: they differ in noise, or "
+                   "because the program itself does not repeat."
+                 : " They all begin alike, and differ only in noise and measured times.";
+}
+
+}  // namespace
+
 std::string left_out_text(const ConditionVerdict& condition) {
   return fmt::format(" Not simulated as written, which can change the answer: {}.",
                      named(condition.left_out));
@@ -78,7 +93,7 @@ std::string doubts_text(const ConditionVerdict& condition) {
   if (!condition.varied.empty() && !condition.is_one_flight())
     text += fmt::format(" The flights differ in {}.", joined_with_and(condition.varied));
   else if (condition.distinct > 1)
-    text += " They all begin alike, and differ only in noise and measured times.";
+    text += why_different(condition);
   if (!condition.left_out.empty()) text += left_out_text(condition);
   const bool is_named =
       condition.miss && condition.miss->evidence == MissReason::Evidence::kPossibleCause;

@@ -66,6 +66,17 @@ TEST(Verdict, NamesOnlyWhatDiffersBetweenFlights) {
               HasSubstr(" The flights differ in start_x_m."));
 }
 
+TEST(Verdict, OfFlightsThatBeginAlikeNamesMeasuredTimesOnlyIfThereAreAny) {
+  Pace pace{.uav = "uav1"};
+  for (const auto kind : {computer::ClockKind::kScripted, computer::ClockKind::kCpu}) {
+    pace.speed.programs = {{.uav = "uav1", .clock = {kind}}};
+    EXPECT_THAT(answers_of({verdict_of(flights(3, 0), {pace})})[0].rest,
+                HasSubstr(kind == computer::ClockKind::kCpu
+                              ? "differ only in noise and measured times."
+                              : "no time is measured: they differ in noise, or because"));
+  }
+}
+
 // How far the flight would have gone beyond it is not known, and what came after was not flown.
 TEST(Verdict, AClauseThatEndsTheFlightIsTheOnlyOneToNameAndNoNearMiss) {
   campaign::ScenarioResults scenario = flights(0, 1);
