@@ -110,6 +110,18 @@ bool shows_no_sufficient(const SizedCondition& sized) {
   return !is_one_start(sized) && !sized.answer.is_below && sized.answer.threshold.low <= 0.0;
 }
 
+/// What the interval of flights does not contain: " (without the machine's spread of 60 %)"; empty:
+/// the machine was quiet.
+std::string spread_text(const SizedCondition& sized) {
+  double spread = 0.0;
+  for (const campaign::TrialResult& trial : sized.trials)
+    for (const campaign::Doubt& doubt : trial.this_run.doubts)
+      if (doubt.kind == campaign::Doubt::Kind::kBusyMachine)
+        spread = std::max(spread, doubt.amount);
+  return spread > 0.0 ? fmt::format(" (without the machine's spread of {:.0f} %)", 100.0 * spread)
+                      : "";
+}
+
 Answer main_answer(const SizeReport& report) {
   const SizedCondition& sized = report.synchronised;
   const sizing::Threshold& threshold = sized.answer.threshold;
@@ -135,7 +147,8 @@ Answer main_answer(const SizeReport& report) {
     return {in_one + slower(report.question.most),
             fmt::format(" {} “{}”, the most that was flown{} {}", than(report.question.most),
                         sized.condition, reservation(sized), evidence)};
-  const std::string interval = is_one ? "" : " " + interval_text(threshold, report.question);
+  const std::string interval =
+      is_one ? "" : " " + interval_text(threshold, report.question) + spread_text(sized);
   if (shows_no_sufficient(sized))
     return {
         "Undecided",

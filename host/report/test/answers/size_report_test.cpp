@@ -27,6 +27,14 @@ TEST(SizeReport, AnswersFirstThenJudgesTheBoards) {
   EXPECT_EQ(sentences[2], "Not met: time required ≤ 6.5 s (5 flights).");
 }
 
+TEST(SizeReport, SaysBesideTheIntervalThatTheMachinesSpreadIsNotInIt) {
+  SizeReport report = sample_size();
+  report.synchronised.trials[3].this_run.doubts = {{campaign::Doubt::Kind::kBusyMachine, "", 0.6}};
+  EXPECT_EQ(size_sentences(report)[0],
+            "Sufficient up to 3.1 × slower than “target” [2.7, 3.6] (without the machine's spread "
+            "of 60 %), 95 %; 10 flights.");
+}
+
 TEST(SizeReport, SaysWhenTheAnswerIsOutsideTheRange) {
   SizeReport report = sample_size();
   report.synchronised.answer.is_above = true;
