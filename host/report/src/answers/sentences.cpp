@@ -284,32 +284,32 @@ std::optional<Answer> differences_between(const std::vector<Verdict>& points) {
 /// Of a sweep: what would do, and each ruling of a condition with the points that have it.
 std::vector<Answer> sweep_answers(const std::vector<Verdict>& points) {
   std::vector<Answer> answers = sufficient_factors(points);
-  for (std::size_t i = 0; i < points.front().conditions.size(); ++i) {
-    struct Alike {
-      const ConditionVerdict* first;
-      std::vector<std::string> where{};
-    };
-    std::vector<Alike> rulings;
+  struct Alike {
+    const ConditionVerdict* first;
+    std::vector<std::string> where{};
+  };
+  std::vector<Alike> rulings;
+  for (std::size_t i = 0; i < points.front().conditions.size(); ++i)
     for (const Verdict& point : points) {
       const ConditionVerdict& at = point.conditions[i];
       auto known = std::ranges::find_if(rulings, [&](const Alike& one) {
-        return one.first->ruling == at.ruling && leaves_out(*one.first) == leaves_out(at) &&
+        return one.first->condition == at.condition && one.first->ruling == at.ruling &&
+               leaves_out(*one.first) == leaves_out(at) &&
                is_in_doubt(*one.first) == is_in_doubt(at);
       });
       if (known == rulings.end()) known = rulings.insert(rulings.end(), Alike{&at});
       known->where.push_back(
           fmt::format("{} ({} of {})", point.point, at.reached, counted(at.flown, "flight")));
     }
-    std::ranges::stable_sort(rulings, {}, [](const Alike& one) { return one.first->ruling; });
-    for (const auto& [first, where] : rulings) {
-      const std::string ruling(name(first->ruling));
-      Answer answer{(is_in_doubt(*first) ? "Doubtful whether " + ruling : capital(ruling)) +
-                        left_out_in_lead(*first),
-                    fmt::format(": “{}” with {}.{}", first->condition, joined_with_and(where),
-                                cause_text(*first, where.size() == 1))};
-      if (!leaves_out(*first)) answer.ruling = first->ruling;
-      answers.push_back(std::move(answer));
-    }
+  std::ranges::stable_sort(rulings, {}, [](const Alike& one) { return one.first->ruling; });
+  for (const auto& [first, where] : rulings) {
+    const std::string ruling(name(first->ruling));
+    Answer answer{(is_in_doubt(*first) ? "Doubtful whether " + ruling : capital(ruling)) +
+                      left_out_in_lead(*first),
+                  fmt::format(": “{}” with {}.{}", first->condition, joined_with_and(where),
+                              cause_text(*first, where.size() == 1))};
+    if (!leaves_out(*first)) answer.ruling = first->ruling;
+    answers.push_back(std::move(answer));
   }
   if (auto differences = differences_between(points)) answers.push_back(*std::move(differences));
   return answers;

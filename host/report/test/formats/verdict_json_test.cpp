@@ -27,6 +27,23 @@ TEST(VerdictJson, HasTheAnswerOfEachConditionAndWhatToDoNext) {
   }
 }
 
+// Also if a point of a later condition is the more urgent one.
+TEST(VerdictJson, OfASweepHasTheAnswerWithWhichTheTextBegins) {
+  campaign::CampaignResults results;
+  for (const char* value : {"1", "2"}) {
+    auto& point =
+        results.scenarios.emplace_back(sample_results({{"host", {1.0}}, {"target", {3.0}}}));
+    point.swept_from = "turn";
+    point.settings = {{"fault", value}};
+  }
+  results.scenarios[0].conditions[0].trials[0].outcome = campaign::Outcome::kGoalMissed;
+  results.scenarios[1].conditions[1].trials[0].outcome = campaign::Outcome::kFailed;
+  const std::vector<Verdict> verdicts = verdicts_of(results);
+  const nlohmann::json all = nlohmann::json::parse(verdicts_json(verdicts));
+  EXPECT_EQ(all[0]["answer"], name(Ruling::kSetUpFailed));
+  EXPECT_EQ(answers_of(verdicts)[0].ruling, Ruling::kSetUpFailed);
+}
+
 TEST(VerdictJson, ARunsResultKeepsItsMembers) {
   campaign::CampaignResults results;
   results.scenarios.push_back(sample_results({{"host", {1.0, 2.0}}, {"target", {3.0}}}));
