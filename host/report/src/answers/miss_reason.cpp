@@ -199,7 +199,7 @@ std::string comparison_text(const Compared& other, const Compared& missed) {
     cost_text += fmt::format(", and set-points are sent {:.2g} times a second instead of {:.2g}",
                              other_hz, own_hz);
   return (is_sufficient(verdict.ruling)
-              ? fmt::format("{} {}", is_in_doubt(verdict) ? "seems" : "is", name(verdict.ruling))
+              ? fmt::format("{} {}", is_in_doubt(verdict) ? "seems" : "is", name_of_flown(verdict))
               : fmt::format("reaches it in {} of {}", verdict.reached,
                             counted(verdict.flown, "flight"))) +
          ": " + cost_text;
@@ -248,7 +248,7 @@ MissReason reason_of(const Compared& missed, const std::vector<Compared>& all,
         std::ranges::find_if(faster, [&](const Compared* one) { return reaches_instead(*one); });
     if (other == faster.end())
       return {Evidence::kSlowerReaches, slower.label,
-              fmt::format("is {}", name(slower.verdict->ruling))};
+              fmt::format("is {}", name_of_flown(*slower.verdict))};
     return {Evidence::kBothSidesReach, slower.label,
             fmt::format("“{}” is faster, and both reach it", (*other)->label)};
   }

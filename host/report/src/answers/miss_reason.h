@@ -17,6 +17,9 @@ struct ToExplain {
 /// Whether its flights say anything of a computer.
 bool is_evidence(const ConditionVerdict& one);
 
+/// The ruling's name, or that on the only flight; without what is doubtful.
+std::string name_of_flown(const ConditionVerdict& condition);
+
 /// The probability that flights which reach the goal equally often differ as much: Fisher's exact
 /// test. If the seeds change nothing, chance has no part.
 double chance_of(const ConditionVerdict& a, const ConditionVerdict& b);

@@ -330,10 +330,13 @@ std::string_view name(Ruling ruling) {
   return words_of(ruling).name;
 }
 
-std::string name(const ConditionVerdict& condition) {
+std::string name_of_flown(const ConditionVerdict& condition) {
   const std::string of_one(lead_of_one_flight(condition));
-  return (is_in_doubt(condition) ? "doubtful whether " : "") +
-         (of_one.empty() ? std::string(name(condition.ruling)) : in_a_sentence(of_one)) +
+  return of_one.empty() ? std::string(name(condition.ruling)) : in_a_sentence(of_one);
+}
+
+std::string name(const ConditionVerdict& condition) {
+  return (is_in_doubt(condition) ? "doubtful whether " : "") + name_of_flown(condition) +
          left_out_in_lead(condition);
 }
 

@@ -112,6 +112,16 @@ TEST_F(MissReasons, ArePossibleIfTheFasterConditionHasOne) {
               HasSubstr("A possible reason: of “fast”, which is faster, none of 43 messages"));
 }
 
+TEST_F(MissReasons, SaysNoMoreOfAFasterConditionThanItsOwnAnswer) {
+  const std::size_t board = add("board", 0, 5, measured(0.2));
+  program(board).clock.factor = 10.0;
+  const std::size_t host = add("host", 5, 0, measured(0.02));
+  for (const std::size_t copied : {board, host})
+    for (campaign::TrialResult& trial : trials(copied)) trial.flight_digest = "0a";
+  EXPECT_THAT(answers_of({verdict()})[0].rest,
+              HasSubstr("“host” is fast enough in this flight: an image costs"));
+}
+
 TEST_F(MissReasons, OfAProgramAsItIsCanBeItsOwnFailure) {
   const std::size_t board = add("board", 0, 5, measured(0.2));
   EXPECT_EQ(verdict().advice.size(), 1u);
