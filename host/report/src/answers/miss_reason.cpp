@@ -147,6 +147,16 @@ std::string unscaled_computing(const Compared& missed, const std::vector<Compare
   return "";
 }
 
+/// That a signal or a debugger stopped the program, on a clock that goes on meanwhile; empty: it
+/// did not.
+std::string stopped(const campaign::TrialResult& flight, const std::optional<Pace>& pace) {
+  if (!pace || !pace->speed.measures_waits()) return "";
+  const auto note = std::ranges::find_if(flight.this_run.notes, [](const std::string& one) {
+    return one.find(" was stopped (") != std::string::npos;
+  });
+  return note == flight.this_run.notes.end() ? "" : *note + ", and its clock went on";
+}
+
 /// That the time limit ended a flight which had missed nothing else yet; empty: it is not so.
 std::string cut_short(const campaign::TrialResult& flight, const std::optional<Pace>&) {
   if (flight.end != campaign::kEndTimeLimit) return "";
@@ -227,8 +237,9 @@ std::string cause_of_faster(const std::vector<const Compared*>& faster, const st
 
 MissReason reason_of(const Compared& missed, const std::vector<Compared>& all,
                      std::size_t comparisons) {
-  if (const std::string cut = in_each(missed, cut_short); !cut.empty())
-    return {Evidence::kPossibleCause, "", cut};
+  for (const auto& find : {stopped, cut_short})
+    if (const std::string cause = in_each(missed, find); !cause.empty())
+      return {Evidence::kPossibleCause, "", cause};
   std::vector<const Compared*> faster;
   for (const Compared& other : all)
     if (is_evidence(*other.verdict) && is_faster(other, missed) &&

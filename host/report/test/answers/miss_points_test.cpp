@@ -112,6 +112,19 @@ TEST_F(MissReasons, ArePossibleIfTheFasterConditionHasOne) {
               HasSubstr("A possible reason: of “fast”, which is faster, none of 43 messages"));
 }
 
+TEST_F(MissReasons, CanBeThatTheProgramWasStoppedWhileItsClockWentOn) {
+  const std::size_t board = add("board", 0, 5, measured(0.2));
+  for (campaign::TrialResult& trial : trials(board))
+    trial.this_run.notes = {
+        "process 7 of the SUT of UAV \"uav1\" was stopped (by a signal or a "
+        "debugger) at ST 0.180000 s"};
+  EXPECT_EQ(verdict().advice[0].kind, Advice::Kind::kTryFaster) << "a CPU clock does not go on";
+  program(board).clock.kind = computer::ClockKind::kWall;
+  EXPECT_THAT(answers_of({verdict()})[0].rest,
+              HasSubstr("A possible reason: process 7 of the SUT"));
+  EXPECT_EQ(verdict().advice[0].kind, Advice::Kind::kFindReason);
+}
+
 TEST_F(MissReasons, SaysNoMoreOfAFasterConditionThanItsOwnAnswer) {
   const std::size_t board = add("board", 0, 5, measured(0.2));
   program(board).clock.factor = 10.0;
