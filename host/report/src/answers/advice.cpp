@@ -173,6 +173,11 @@ std::string sentence_of(const Advice& advice, const Verdict& verdict) {
         case MissReason::Evidence::kEquallyFastReaches:
           return fmt::format("Look for the reason in what differs from “{}”, such as the radio.",
                              advice.subject);
+        case MissReason::Evidence::kOtherSensorsReach:
+          return fmt::format(
+              "Look for the reason in what the sensors of “{}” do otherwise: noise, rate, delay or "
+              "losses.",
+              advice.subject);
         case MissReason::Evidence::kKnownCause:
           return "Fix this, then fly again.";
         case MissReason::Evidence::kPossibleCause:

@@ -221,6 +221,10 @@ bool is_equally_fast_and_reaches(const Compared& other, const Compared& missed,
          reaches_more_often(*other.verdict, *missed.verdict, comparisons);
 }
 
+bool is_equally_fast_with_other_sensors(const Compared& other, const Compared& missed) {
+  return other.pace()->speed == missed.pace()->speed && !have_same_sensors(other, missed);
+}
+
 std::string why_not_compared(const Compared& other, const Compared& missed) {
   if (!other.pace() || !missed.pace()) return "";
   const std::string difference = difference_of(other, missed);

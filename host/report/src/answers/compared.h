@@ -54,6 +54,8 @@ std::string met_by(const ConditionVerdict& other, const ConditionVerdict& missed
 std::string nearer_to(const Compared& faster, const Compared& missed);
 bool is_equally_fast_and_reaches(const Compared& other, const Compared& missed,
                                  std::size_t comparisons);
+/// @pre the pace of both is known.
+bool is_equally_fast_with_other_sensors(const Compared& other, const Compared& missed);
 /// Why one that reaches the goal is not compared with one that misses it, as a part of a sentence;
 /// empty: the two do not differ in what they fly with, or it is not known.
 std::string why_not_compared(const Compared& other, const Compared& missed);

@@ -306,11 +306,16 @@ MissReason reason_of(const Compared& missed, const std::vector<Compared>& all,
     return compared(Evidence::kFasterUndecided, *faster.front(), missed,
                     comparison_text(*faster.front(), missed));
   if (!cause.empty()) return {Evidence::kPossibleCause, "", cause};
-  for (const Compared& other : all)
-    if (is_evidence(*other.verdict) && reaches_instead(other))
-      if (const std::string why = why_not_compared(other, missed); !why.empty())
-        return {Evidence::kNotComparable, other.label, why};
-  return {};
+  MissReason reason;
+  for (const Compared& other : all) {
+    if (!is_evidence(*other.verdict) || !reaches_instead(other)) continue;
+    const std::string why = why_not_compared(other, missed);
+    if (why.empty()) continue;
+    if (is_equally_fast_with_other_sensors(other, missed))
+      return {Evidence::kOtherSensorsReach, other.label};
+    if (reason.text.empty()) reason = {Evidence::kNotComparable, other.label, why};
+  }
+  return reason;
 }
 
 Ruling ruling_on(Evidence evidence) {

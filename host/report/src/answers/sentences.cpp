@@ -103,6 +103,8 @@ constexpr std::array kMissReasons = {
     " {text}.",
     " “{condition}” reaches it, but is not compared, since {text}: whether speed matters is not "
     "known.",
+    " “{condition}” is exactly as fast and reaches it: what differs are its sensors or its "
+    "simulator.",
     " No condition that is clearly faster and otherwise the same was flown, so whether speed "
     "matters "
     "is not known.",

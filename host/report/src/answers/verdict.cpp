@@ -279,7 +279,8 @@ std::vector<Advice> advice_on(const ConditionVerdict& lead) {
         advice.push_back({Kind::kGiveValue});
       else if (lead.pace && lead.pace->speed.stretches_unseen_waits())
         advice.push_back({Kind::kUnstretch});
-      else if (lead.miss->evidence == MissReason::Evidence::kBothSidesReach)
+      else if (lead.miss->evidence == MissReason::Evidence::kBothSidesReach ||
+               lead.miss->evidence == MissReason::Evidence::kOtherSensorsReach)
         advice.push_back({Kind::kFindReason, lead.miss->condition});
       else if (lead.miss->evidence == MissReason::Evidence::kPossibleCause)
         advice.push_back({Kind::kFindReason});

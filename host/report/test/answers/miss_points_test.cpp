@@ -112,6 +112,16 @@ TEST_F(MissReasons, ArePossibleIfTheFasterConditionHasOne) {
               HasSubstr("A possible reason: of “fast”, which is faster, none of 43 messages"));
 }
 
+TEST_F(MissReasons, AreTheSensorsWhereAnEquallyFastConditionWithOthersReachesIt) {
+  const std::size_t frozen = add("frozen", 0, 5, measured(0.02));
+  trials(add("fast", 5, 0, measured(0.02)))[0].profiles = {"none"};
+  EXPECT_EQ(ruling(frozen), Ruling::kGoalMissed);
+  const std::string text = verdict_text({verdict()}, Markup::kPlain);
+  EXPECT_THAT(text, HasSubstr("“fast” is exactly as fast and reaches it: what differs are its "
+                              "sensors"));
+  EXPECT_THAT(text, testing::Not(HasSubstr("faster computer")));
+}
+
 TEST_F(MissReasons, CanBeThatTheProgramWasStoppedWhileItsClockWentOn) {
   const std::size_t board = add("board", 0, 5, measured(0.2));
   for (campaign::TrialResult& trial : trials(board))

@@ -66,11 +66,12 @@ struct MissReason {
     kFasterReaches,  ///< another condition differs in speed only, is faster, and reaches it
     kMissesOwnPace,  ///< computing alone takes longer than a limit on its pace allows
     // It is not known.
-    kNotComparable,    ///< another one reaches it, but differs in more than speed: see `text`
-    kNothing,          ///< no faster condition was flown, or the speeds are not known
-    kFasterUndecided,  ///< another condition is faster, but does not show that speed matters
-    kPossibleCause,    ///< something else happened that can be the reason: see `text`
-    kBothSidesReach,   ///< a faster and a slower one, which differ in speed only, reach it
+    kNotComparable,      ///< another one reaches it, but differs in more than speed: see `text`
+    kOtherSensorsReach,  ///< another one is as fast, has other sensors, and reaches it
+    kNothing,            ///< no faster condition was flown, or the speeds are not known
+    kFasterUndecided,    ///< another condition is faster, but does not show that speed matters
+    kPossibleCause,      ///< something else happened that can be the reason: see `text`
+    kBothSidesReach,     ///< a faster and a slower one, which differ in speed only, reach it
     // Speed is probably not the reason.
     kKnownCause,          ///< what happened has nothing to do with computing: see `text`
     kInstant,             ///< computing takes no time under this condition
