@@ -24,9 +24,11 @@ constexpr std::size_t kMostMissed = 3;  // that a sentence names
 
 /// How long set-points were not sent, where their rate does not tell; empty: it does.
 std::string gap_text(const Pace& pace) {
-  constexpr double kMuchLonger = 3.0;
+  constexpr double kMuchLonger = 3.0, kLong_s = 10.0;
   if (pace.setpoint_gap_s * pace.setpoint_hz < kMuchLonger) return "";
-  return fmt::format(" (but for up to {} not at all)", short_ms(pace.setpoint_gap_s));
+  return fmt::format(" (but for up to {} not at all)",
+                     pace.setpoint_gap_s < kLong_s ? short_ms(pace.setpoint_gap_s)
+                                                   : fmt::format("{:.0f} s", pace.setpoint_gap_s));
 }
 
 /// "the camera is read 9 times a second instead of 30, and “detect” takes 81 % of the computing

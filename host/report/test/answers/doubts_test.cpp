@@ -44,6 +44,8 @@ TEST(Verdict, SaysHowOftenSetpointsWereLost) {
       return answers_of({verdict_of(flights(reached, 1 - reached), {pace})})[0].rest;
     };
     EXPECT_THAT(answer(), HasSubstr("10 times a second (but for up to 2500 ms not at all)"));
+    pace.setpoint_gap_s = 37.9;
+    EXPECT_THAT(answer(), HasSubstr("(but for up to 38 s not at all)"));
     pace.setpoint_gap_s = 0.2;
     pace.unqueued = {{"uav1", "imu", 12}};
     EXPECT_THAT(answer(), HasSubstr("12 measurements of “imu” of uav1 had no place in its queue"));
