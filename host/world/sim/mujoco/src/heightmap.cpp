@@ -31,6 +31,7 @@ Heights heights_of(const raster::Mesh& mesh) {
     if (at.first == heights_m.begin()->first.first) ++out.rows;
     out.top_m = std::max(out.top_m, height_m);
   }
+  if (out.rows == 0) return out;  // of no mesh that can be read
   out.columns = heights_m.size() / out.rows;
   out.shares.resize(heights_m.size());
   std::size_t i = 0;
