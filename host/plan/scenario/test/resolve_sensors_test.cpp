@@ -102,11 +102,13 @@ TEST_F(ResolveSensors, WarnsOfASensorThatLosesHalfOfItsMeasurements) {
 
 TEST_F(ResolveSensors, WarnsOfAReceiverWithoutAFixInHalfOfItsMeasurements) {
   sim::Sensor navsat = make_range("navsat");
-  navsat.model = sim::NavSatModel{.outage_every_s = 2.0, .outage_lasts_s = 0.9};
+  navsat.model = sim::NavSatModel();
   world_.uavs[0].sensors.push_back(navsat);
+  const std::string often = "[sensors.navsat]\nkind = \"navsat\"\noutage_every_s = 2.0\n";
+  lay("seldom.toml", often + "outage_lasts_s = 0.9\n");
   (void)resolve();
   EXPECT_THAT(warnings_, testing::Not(testing::Contains(HasSubstr("fix"))));
-  std::get<sim::NavSatModel>(world_.uavs[0].sensors.back().model).outage_lasts_s = 1.9;
+  lay("often.toml", often + "outage_lasts_s = 1.9\n");
   (void)resolve();
   EXPECT_THAT(warnings_, testing::Contains(AllOf(HasSubstr("sensor 'navsat' of UAV 'uav1'"),
                                                  HasSubstr("has no fix in 95 % of its"))));

@@ -121,7 +121,7 @@ class PhysicsXml {
             },
             [&](const PlaneGeometry& g) { return describe(g, X, collision, is_static); },
             [&](const MeshGeometry& g) {
-              return is_static && is_heightmap(g) ? describe_heights(g, X)
+              return is_static && is_heightmap(g) ? describe_heights(g, X, collision)
                                                   : describe(g, X, collision);
             },
         },
@@ -156,8 +156,10 @@ class PhysicsXml {
     return fmt::format(R"(type="mesh" {} mesh="{}")", place(X), name);
   }
 
-  std::string describe_heights(const MeshGeometry& mesh, const Pose& X) {
+  std::string describe_heights(const MeshGeometry& mesh, const Pose& X,
+                               const Collision& collision) {
     constexpr double kDepth_m = 10.0;  // below height 0: what is in it is pushed up
+    warn_of_shape(mesh, collision, "has the clearances of");
     MeshGeometry whole = mesh;
     whole.piece.reset();
     const Heights& heights = heights_.emplace_back(
@@ -169,7 +171,8 @@ class PhysicsXml {
     return fmt::format(R"(type="hfield" {} hfield="{}")", place(X), name);
   }
 
-  void warn_of_shape(const MeshGeometry& mesh, const Collision& collision) const {
+  void warn_of_shape(const MeshGeometry& mesh, const Collision& collision,
+                     std::string_view what = "collides as") const {
     constexpr double kAsWritten_m = 0.01;
     const CollisionPieces& pieces = read_named(
         mesh.named_at, [&]() -> const CollisionPieces& { return mesh_files_.pieces(mesh); });
@@ -178,8 +181,8 @@ class PhysicsXml {
     warn_({Consequence::kBehavesDifferent,
            {mesh.file.string()},
            fmt::format("collision '{}'", collision.name),
-           is_hull ? "collides as the convex hull of its mesh"
-                   : fmt::format("collides as convex pieces that are up to {:g} m beside its mesh",
+           is_hull ? fmt::format("{} the convex hull of its mesh", what)
+                   : fmt::format("{} convex pieces that are up to {:g} m beside its mesh", what,
                                  pieces.tolerance_m)});
   }
 
