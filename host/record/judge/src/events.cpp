@@ -126,10 +126,13 @@ std::vector<Event> reaction_times(const Calls& calls, const std::string& sensor)
 
 std::vector<Event> data_ages(const Calls& calls, const std::string& sensor) {
   std::vector<Event> events;
-  with_newest(calls, calls.samples(sensor, false),
-              [&](const Command& command, const Sample& sample) {
-                events.push_back({command.sent, to_seconds(command.sent - sample.sampled_at), {}});
-              });
+  with_newest(
+      calls, calls.samples(sensor, false), [&](const Command& command, const Sample& sample) {
+        const Duration until_command = command.sent - sample.had_at;
+        events.push_back({command.sent, to_seconds(command.sent - sample.sampled_at),
+                          Reaction{sample.had_at - sample.sampled_at, until_command, Duration(0),
+                                   until_command - calls.waiting(sample.had_at, command.sent)}});
+      });
   return events;
 }
 

@@ -10,11 +10,11 @@
 
 namespace tether::judge {
 
-/// What a reaction time consists of.
+/// What a reaction time, or the age of data, consists of.
 struct Reaction {
-  Duration until_had;      ///< from the image's instant until the program had it
+  Duration until_had;      ///< from the measurement's instant until the program had it
   Duration until_command;  ///< from then to its command
-  Duration until_effect;   ///< from then to the effect
+  Duration until_effect;   ///< from then to the effect; of an age, 0
   Duration computing;      ///< of `until_command`: without the waits of other calls
 };
 

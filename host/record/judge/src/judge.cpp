@@ -166,7 +166,7 @@ class Judge {
     return of;
   }
 
-  // What of reaction times is the program's.
+  // What of reaction times and ages is the program's.
   static void divide(const std::vector<Event>& events, const mission::Unit& unit,
                      ClauseVerdict& verdict) {
     std::vector<double> without_s, computing_s;
@@ -217,10 +217,13 @@ class Judge {
 
   static std::string text_of(const Reaction& reaction) {
     const auto ms = [](Duration time) { return 1e3 * to_seconds(time); };
-    return fmt::format(
-        ": {:.3g} ms from the image's instant until the program had it, {:.3g} ms until its "
-        "command, {:.3g} ms until the effect",
-        ms(reaction.until_had), ms(reaction.until_command), ms(reaction.until_effect));
+    std::string text = fmt::format(
+        ": {:.3g} ms from the measurement's instant until the program had it, {:.3g} ms until its "
+        "command",
+        ms(reaction.until_had), ms(reaction.until_command));
+    if (reaction.until_effect > Duration(0))
+      text += fmt::format(", {:.3g} ms until the effect", ms(reaction.until_effect));
+    return text;
   }
 
   /// Index of the last of `count` margins, largest first, that a share must have.

@@ -189,21 +189,18 @@ TEST(Judge, ReactionsAgesAndLoops) {
   Flight flight = mission();
   flight.image(3.0, 3.2, 3.1).command(3.3, 3.4).command(3.5, 3.6);
   flight.image(4.0, 4.2, 4.1).command(5.1, 5.1).image(5.5, 5.5, 5.4);
-  for (const Case& c : std::vector<Case>{
-           {R"(always = "reaction_time <= 600 ms")", false, -400.0, 5.1,
-            "1000 ms at ST 5.100 s: 100 ms from the image's instant until the program had it, "
-            "900 ms until its command, 0 ms until the effect"},
-           {R"(always = "reaction_time of eye <= 0.6 s in 66 %")", true, 0.1, 8.0, "0.5 s"},
-           {"during = [\"a\"]\nalways = \"reaction_time <= 1 s\"",
-            false,
-            {},
-            {},
-            "no such command"},
-           {R"(never = "data_age >= 2 s")", true, 1.0, 8.0, "1 s at ST 5.100 s"},
-           {R"(always = "loop_period of eye <= 1.2 s")", false, -0.3, 5.5, "1.5 s"},
-           {R"(always = "loop_period <= 2 s")", true, 0.4, 8.0, "1.6 s"},
-           {R"(always = "loop_jitter of eye <= 0.3 s")", true, 0.05, 8.0, "0.25 s"},
-           {R"(always = "reaction_time of nose <= 1 s")", false, {}, {}, "no such command"}})
+  for (
+      const Case& c : std::vector<Case>{
+          {R"(always = "reaction_time <= 600 ms")", false, -400.0, 5.1,
+           "1000 ms at ST 5.100 s: 100 ms from the measurement's instant until the program had it, "
+           "900 ms until its command"},
+          {R"(always = "reaction_time of eye <= 0.6 s in 66 %")", true, 0.1, 8.0, "0.5 s"},
+          {"during = [\"a\"]\nalways = \"reaction_time <= 1 s\"", false, {}, {}, "no such command"},
+          {R"(never = "data_age >= 2 s")", true, 1.0, 8.0, "1 s at ST 5.100 s"},
+          {R"(always = "loop_period of eye <= 1.2 s")", false, -0.3, 5.5, "1.5 s"},
+          {R"(always = "loop_period <= 2 s")", true, 0.4, 8.0, "1.6 s"},
+          {R"(always = "loop_jitter of eye <= 0.3 s")", true, 0.05, 8.0, "0.25 s"},
+          {R"(always = "reaction_time of nose <= 1 s")", false, {}, {}, "no such command"}})
     expect(flight, c);
   const ClauseVerdict times = flight.verdict(R"(always = "reaction_time <= 600 ms in 50 %")");
   ASSERT_EQ(times.quantiles.size(), 21U);
@@ -231,6 +228,9 @@ TEST(Judge, ComputingOfAReactionIsWithoutWaitsForOtherCalls) {
   const ClauseVerdict times = flight.verdict(R"(always = "reaction_time <= 600 ms")");
   EXPECT_NEAR(*times.least_without_computing, 400.0, 1e-9);
   EXPECT_NEAR(*times.median_of_computing, 100.0, 1e-9);
+  const ClauseVerdict ages = flight.verdict(R"(always = "data_age of eye <= 600 ms")");
+  EXPECT_NEAR(*ages.least_without_computing, 300.0, 1e-9) << "the same until the command";
+  EXPECT_NEAR(*ages.median_of_computing, 100.0, 1e-9);
 }
 
 TEST(Judge, ReactionsInFreeRunningAreInSt) {

@@ -48,13 +48,15 @@ const judge::ClauseVerdict* of_forgotten_task(const campaign::TrialResult& fligh
   return found == flight.clauses.end() ? nullptr : &*found;
 }
 
-/// A missed limit on reaction times that no program could meet; empty: there is none.
+/// A missed limit on reaction times, or ages of data, that no program could meet; empty: there is
+/// none.
 std::string limit_without_program(const campaign::TrialResult& flight) {
   for (const judge::ClauseVerdict& clause : flight.clauses)
     if (!clause.met && clause.limit && clause.least_without_computing >= clause.limit)
       return fmt::format(
           "“{}” allows {:.4g} {}, and at least {:.4g} {} pass without computing: "
-          "until the program has an image, while it waits, and until its command has an effect",
+          "until the program has a measurement, while it waits, and until its command has an "
+          "effect",
           clause.name, *clause.limit, clause.unit, *clause.least_without_computing, clause.unit);
   return "";
 }
@@ -110,7 +112,7 @@ std::string possible_cause(const campaign::TrialResult& flight, const std::optio
   return "";
 }
 
-/// A missed limit on the reaction to an image that computing alone is beyond, from the image to its
+/// A missed limit on the reaction to a measurement that computing alone is beyond, until its
 /// command; empty: there is none.
 std::string limit_below_computing(const campaign::TrialResult& flight,
                                   const std::optional<Pace>& pace) {
@@ -122,8 +124,9 @@ std::string limit_below_computing(const campaign::TrialResult& flight,
                                  clause.median_of_computing > clause.limit;
     if (!is_of_computing) continue;
     const double unit_s = clause.unit == "ms" ? 1e-3 : 1.0;
-    return fmt::format("From an image to its command, computing takes {}, longer than “{}” allows",
-                       short_ms(unit_s * *clause.median_of_computing), clause.name);
+    return fmt::format(
+        "From a measurement to its command, computing takes {}, longer than “{}” allows",
+        short_ms(unit_s * *clause.median_of_computing), clause.name);
   }
   return "";
 }

@@ -194,7 +194,7 @@ TEST_F(MissReasons, AreSpeedIfComputingAloneTakesLongerThanALimit) {
   EXPECT_EQ(ruling(board), Ruling::kNotFastEnough);
   EXPECT_THAT(verdict_text({verdict()}, Markup::kPlain),
               testing::AllOf(StartsWith("Not fast enough in this flight: "),
-                             HasSubstr("From an image to its command, computing takes 200 ms, "
+                             HasSubstr("From a measurement to its command, computing takes 200 ms, "
                                        "longer than “quick” allows.")));
   paces_[board]->unclear = "it probably waits in a loop";
   EXPECT_EQ(ruling(board), Ruling::kGoalMissed);
