@@ -7,6 +7,19 @@
 #include <tether/toml/table.h>
 
 namespace tether::scenario {
+namespace {
+
+constexpr std::string_view kSensors = "sensors.";
+
+/// "sensors.NAME.KEY", of a table that the file has: such a key may be new.
+bool is_of_a_sensor(std::string_view path, const toml::Table& root) {
+  const std::string_view rest = path.substr(kSensors.size());
+  const std::size_t dot = rest.find('.');
+  return dot != std::string_view::npos && rest.find('.', dot + 1) == std::string_view::npos &&
+         root.has("sensors") && root.table("sensors").has(rest.substr(0, dot));
+}
+
+}  // namespace
 
 Profile load_profile(const std::filesystem::path& file) {
   std::set<std::string> none;
@@ -20,8 +33,11 @@ Profile load_profile(const std::filesystem::path& file, const std::vector<Settin
   profile.files = {profile.file};
   toml::Document document = toml::Document::load(profile.file);
   for (const auto& [key, value] : settings) {
-    const std::string_view path = std::string_view(key).substr(key.starts_with("uav.") ? 4 : 0);
-    if (path.starts_with("sensors.") && document.replace(path, value) > 0) replaced.insert(key);
+    const std::string path = key.substr(key.starts_with("uav.") ? 4 : 0);
+    if (!path.starts_with(kSensors)) continue;
+    if (document.replace(path, value) > 0 ||
+        (is_of_a_sensor(path, document.root()) && document.add(path, value) > 0))
+      replaced.insert(key);
   }
   const toml::Table root = document.root({"name", "description", "sensors"});
   profile.name = root.identifier("name");

@@ -77,6 +77,18 @@ TEST_F(Settings, ReplaceValuesOfSensorsThatAProfileHas) {
   }
 }
 
+TEST_F(Settings, MayBeNewKeysOfSensorsThatAProfileHas) {
+  const Scenario scenario = load({{"sensors.camera.lost_probability", "0.25"}});
+  sim::Sensor camera = make_camera("camera");
+  for (const auto& setting : scenario.uavs.front().profile->sensors.at("camera").settings)
+    setting.set(camera);
+  EXPECT_EQ(camera.driver.lost_probability, 0.25);
+  EXPECT_THAT(bad_file_error([&] {
+                load({{"sensors.camera.nonsense", "1"}});
+              }).what(),
+              testing::StartsWith("--set sensors.camera.nonsense=1: unknown key 'nonsense'"));
+}
+
 TEST_F(Settings, NeedAKeyThatTheFileHas) {
   try {
     load({{"sut.parameters.nonsense", "1"}});
