@@ -19,6 +19,7 @@ using Change = decltype(Quantity::change);
 
 constexpr toml::Range kAnyNumber{.min = -1e6, .max = 1e6};
 constexpr toml::Range kAnyFactor{.min = 0.0, .max = 1e6, .above_min = true};
+constexpr toml::Range kFactorOrNone{.min = 0.0, .max = 1e6};  // of what can be absent
 constexpr toml::Range kTurn_deg{.min = -360.0, .max = 360.0};
 constexpr toml::Range kPathDelay_s{.min = 0.0, .max = kLongestRun_s};
 constexpr toml::Range kSensorShift_m{.min = -100.0, .max = 100.0};
@@ -130,7 +131,7 @@ constexpr std::array kQuantities = {
              [](sim::World&, sim::Uav*, sim::Model* model, sim::Sensor*, double hue_deg) {
                for_each_colour(*model, [&](Vec3& rgb) { rgb = turned_hue(rgb, hue_deg); });
              }},
-    Quantity{"model_saturation_factor", Part::kModel, kAnyFactor,
+    Quantity{"model_saturation_factor", Part::kModel, kFactorOrNone,
              [](sim::World&, sim::Uav*, sim::Model* model, sim::Sensor*, double factor) {
                for_each_colour(*model, [&](Vec3& rgb) {
                  rgb = within_colours(grey_of(rgb) + factor * (rgb - grey_of(rgb)));
@@ -145,7 +146,7 @@ constexpr std::array kQuantities = {
                for (uav::Waypoint& point : model->path->waypoints)
                  point.at = duration_from_seconds(factor * to_seconds(point.at));
              }},
-    Quantity{"wind_factor", Part::kWind, kAnyFactor,
+    Quantity{"wind_factor", Part::kWind, kFactorOrNone,
              [](sim::World& world, sim::Uav*, sim::Model*, sim::Sensor*, double factor) {
                world.wind.v_WA_m_s = factor * world.wind.v_WA_m_s;
              }},
@@ -153,7 +154,7 @@ constexpr std::array kQuantities = {
              [](sim::World& world, sim::Uav*, sim::Model*, sim::Sensor*, double yaw_deg) {
                world.wind.v_WA_m_s = rotate(turn(0.0, 0.0, yaw_deg), world.wind.v_WA_m_s);
              }},
-    Quantity{"turbulence_factor", Part::kWind, kAnyFactor,
+    Quantity{"turbulence_factor", Part::kWind, kFactorOrNone,
              [](sim::World& world, sim::Uav*, sim::Model*, sim::Sensor*, double factor) {
                world.wind.turbulence *= factor;
              }},

@@ -310,6 +310,9 @@ TEST_F(VaryTables, RefuseMistakesAtTheirLine) {
   refused("[vary.a]\nquantity = \"model_x_m\"\nuniform = [0, 1]\n", 0, "of");
   refused("[vary.a]\nquantity = \"path_delay_s\"\nof = \"m\"\nvalue = -100\n", 3, "value");
   refused("[vary.a]\nquantity = \"mass_factor\"\nnormal = [-1, 1]\n", 2, "normal");
+  refused("[vary.a]\nquantity = \"mass_factor\"\nuniform = [0, 1]\n", 2, "uniform");
+  EXPECT_EQ(load("[vary.a]\nquantity = \"wind_factor\"\nuniform = [0, 1]\n").variations.size(), 1U)
+      << "there may be none";
   refused("[vary.a]\nquantity = \"sensor_pitch_deg\"\nof = \"a.b\"\none_of = [9, 1e3]\n", 3,
           "one_of");
 }
