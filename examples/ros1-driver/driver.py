@@ -168,10 +168,19 @@ class Driver:
         self.command(tether.Setpoint(velocity_m_s=(v.x, v.y, v.z), yaw_rate_rad_s=twist.angular.z,
                                      in_heading=in_heading))
 
+    def knows(self, frame: str, *known: str) -> bool:
+        if frame in known or frame in [self.prefix + name for name in known]:
+            return True
+        rospy.logwarn_once("commands in the frame '%s' are refused; known are %s", frame, known)
+        return False
+
     def on_stamped(self, message: Any) -> None:
-        self.on_velocity(message.twist, in_heading=message.header.frame_id != self.prefix + "odom")
+        if self.knows(message.header.frame_id, "", "base_link", "odom"):
+            self.on_velocity(message.twist, in_heading=message.header.frame_id != self.prefix + "odom")
 
     def on_pose(self, message: Any) -> None:
+        if not self.knows(message.header.frame_id, "", "odom"):
+            return
         p, q = message.pose.position, message.pose.orientation
         yaw_rad = np.arctan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y**2 + q.z**2))
         self.command(tether.Setpoint(position_W_m=(p.x, p.y, p.z), yaw_rad=float(yaw_rad)))

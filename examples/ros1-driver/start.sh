@@ -7,15 +7,9 @@ export ROS_MASTER_URI=http://127.0.0.1:$port ROS_IP=127.0.0.1
 ROS_LOG_DIR=$(mktemp -d) && export ROS_LOG_DIR
 
 roscore -p $port &
-roscore=$!
 ./driver.py &
-driver=$!
 ./wall_keeper.py
 result=$?
 
-kill $driver
-wait $driver
-kill $roscore
-wait $roscore
 rm -r "$ROS_LOG_DIR"
-exit $result
+exit $result  # with this script, the flight and all of its processes end

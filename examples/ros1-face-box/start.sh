@@ -7,17 +7,10 @@ export ROS_MASTER_URI=http://127.0.0.1:$port ROS_IP=127.0.0.1
 ROS_LOG_DIR=$(mktemp -d) && export ROS_LOG_DIR
 
 roscore -p $port &
-roscore=$!
 ./camera.py &
-camera=$!
 ./mavlink_bridge.py &
-bridge=$!
 ./tracker.py
 result=$?
 
-kill $camera $bridge
-wait $camera $bridge
-kill $roscore
-wait $roscore
 rm -r "$ROS_LOG_DIR"
-exit $result
+exit $result  # with this script, the flight and all of its processes end

@@ -107,9 +107,12 @@ class Driver {
     while (!has_ended_) {
       dds_waitset_wait(any, nullptr, 0, DDS_MSECS(200));
       ros2::take<ros2::Twist>(velocity, [&](const auto& m) { fly(m, true); });
-      ros2::take<ros2::TwistStamped>(
-          stamped, [&](const auto& m) { fly(m.twist, m.header.frame_id != kOdom); });
-      ros2::take<ros2::PoseStamped>(pose, [&](const auto& m) { fly_to(m.pose); });
+      ros2::take<ros2::TwistStamped>(stamped, [&](const auto& m) {
+        if (knows(m.header.frame_id, {"", kBody, kOdom})) fly(m.twist, m.header.frame_id != kOdom);
+      });
+      ros2::take<ros2::PoseStamped>(pose, [&](const auto& m) {
+        if (knows(m.header.frame_id, {"", kOdom})) fly_to(m.pose);
+      });
       for (const auto& one : subscriptions_) heed(one.status());
     }
   }
@@ -173,6 +176,11 @@ class Driver {
 
   // --- commands ---
 
+  static bool knows(const string& frame, const std::vector<string>& known) {
+    if (std::find(known.begin(), known.end(), frame) != known.end()) return true;
+    std::fprintf(stderr, "ros2_driver: a command in the frame '%s' is refused\n", frame.c_str());
+    return false;
+  }
   void fly(const ros2::Twist& twist, bool in_heading) {
     api::Setpoint setpoint{};
     setpoint.mask = TETHER_VELOCITY | TETHER_YAW_RATE;

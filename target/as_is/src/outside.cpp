@@ -46,9 +46,10 @@ bool has_any(pid_t process, const std::set<std::string>& sockets) {
 Who listens_at(std::uint16_t port, std::span<const pid_t> inside) {
   const std::set<std::string> sockets = listening(port);
   if (sockets.empty()) return Who::kNobody;
-  const bool is_inside =
-      std::ranges::any_of(inside, [&](pid_t process) { return has_any(process, sockets); });
-  return is_inside ? Who::kInside : Who::kOutside;
+  if (std::ranges::any_of(inside, [&](pid_t process) { return has_any(process, sockets); }))
+    return Who::kInside;
+  // One of them may have closed it meanwhile.
+  return listening(port) == sockets ? Who::kOutside : Who::kNobody;
 }
 
 // A line of the table: "1: FLOCK ADVISORY WRITE PROCESS MAJOR:MINOR:INODE START END", the device in

@@ -32,8 +32,8 @@ constexpr Duration kBetweenTellings = std::chrono::milliseconds(1);
 constexpr Duration kIdle = std::chrono::seconds(10);
 // Who computes so much has been woken.
 constexpr Duration kLeastWoken = std::chrono::microseconds(100);
-// Once or twice, a thread can have begun to compute just after it was looked at.
-constexpr int kWakes = 3;
+// Now and then, a thread can have begun to compute just after it was looked at.
+constexpr int kWakes = 10;
 // Of a wait without a deadline; then it begins again.
 constexpr Duration kForEver = std::chrono::hours(1);
 

@@ -77,7 +77,8 @@ void SutProcesses::start(const scenario::Scenario& scenario, const SutRun& run,
             .program = {},
             .process = {},
             .board = board,
-            .is_as_is = uav.sut.is_as_is};
+            .is_as_is = uav.sut.is_as_is,
+            .has_all_processes = uav.sut.has_all_processes};
     if (board) {
       const board::BoardSut there = board_sut(*board, scenario, i, run, sut.log);
       sut.program = fmt::format("{} on {}", there.words[there.program],
@@ -200,7 +201,7 @@ std::string SutProcesses::describe_end(Sut& sut, const std::string& reason) cons
   // run that began, this one may have finished.
   const bool is_unfinished = exit.code == 0 && (reason.empty() || suts_.size() == 1);
   const char* const missing =
-      !is_unfinished ? ""
+      !is_unfinished || sut.has_all_processes ? ""
       : sut.is_as_is ? " (it never began under the run's clock: a shell script has to start its "
                        "program with 'exec', or needs all_processes = true; a static program "
                        "cannot fly as it is)"

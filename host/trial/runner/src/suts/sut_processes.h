@@ -62,6 +62,7 @@ class SutProcesses {
     std::unique_ptr<os::ChildProcess> process;
     board::Board* board = nullptr;  // null: this machine
     bool is_as_is = false;
+    bool has_all_processes = false;
   };
   void start_group(const scenario::Scenario& scenario, const SutRun& run, const SutGroup& group,
                    const std::filesystem::path& folder, board::Board* board);
