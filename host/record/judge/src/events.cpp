@@ -111,28 +111,30 @@ void with_newest(const Calls& calls, const std::vector<Sample>& samples, const T
   }
 }
 
+Reaction reaction_of(const Calls& calls, const Command& command, const Sample& newest,
+                     Duration until_effect) {
+  const Duration until_command = command.sent - newest.had_at;
+  return {newest.had_at - newest.sampled_at, until_command, until_effect,
+          until_command - calls.waiting(newest.had_at, command.sent)};
+}
+
 std::vector<Event> reaction_times(const Calls& calls, const std::string& sensor) {
   std::vector<Event> events;
   with_newest(calls, calls.samples(sensor, true), [&](const Command& command, const Sample& image) {
     if (!command.effect_at) return;
-    const Duration until_command = command.sent - image.had_at;
-    events.push_back(
-        {*command.effect_at, to_seconds(*command.effect_at - image.sampled_at),
-         Reaction{image.had_at - image.sampled_at, until_command, *command.effect_at - command.sent,
-                  until_command - calls.waiting(image.had_at, command.sent)}});
+    events.push_back({*command.effect_at, to_seconds(*command.effect_at - image.sampled_at),
+                      reaction_of(calls, command, image, *command.effect_at - command.sent)});
   });
   return events;
 }
 
 std::vector<Event> data_ages(const Calls& calls, const std::string& sensor) {
   std::vector<Event> events;
-  with_newest(
-      calls, calls.samples(sensor, false), [&](const Command& command, const Sample& sample) {
-        const Duration until_command = command.sent - sample.had_at;
-        events.push_back({command.sent, to_seconds(command.sent - sample.sampled_at),
-                          Reaction{sample.had_at - sample.sampled_at, until_command, Duration(0),
-                                   until_command - calls.waiting(sample.had_at, command.sent)}});
-      });
+  with_newest(calls, calls.samples(sensor, false),
+              [&](const Command& command, const Sample& sample) {
+                events.push_back({command.sent, to_seconds(command.sent - sample.sampled_at),
+                                  reaction_of(calls, command, sample, Duration(0))});
+              });
   return events;
 }
 

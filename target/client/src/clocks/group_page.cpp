@@ -171,8 +171,9 @@ std::string GroupPage::Process::called() const {
 }
 
 void GroupPage::add_present(Computed& computed) const {
-  for (const Process& one : processes_)
-    if (one.id > 0) computed[one.called()] += Duration(one.used_ns);
+  for (std::size_t i = 0; i < processes_end_; ++i)
+    if (const Process& one = processes_[i]; one.id > 0)
+      computed[one.called()] += Duration(one.used_ns);
 }
 
 void GroupPage::forget_ended(Computed& computed) {

@@ -73,8 +73,7 @@ class ConcurrentVehicle final : public InteractingVehicle {
 
   Caller caller_;
   MappedClockPage clock_;
-  MappedGroupPage
-      group_;  // of a program whose processes share one ET: has it in place of the clock
+  MappedGroupPage group_;  // if the program's processes share one ET: has it in place of clock_
   bool free_running_;
   mutable std::atomic<ExecTime> latest_{};  // that `now` has shown in free running
   std::mutex mutex_;
