@@ -151,7 +151,7 @@ Code magnitude(int value) {
 void write_block(Block& samples, int& last, Writer& out) {
   constexpr int kExtra = 2;  // bits that are kept between the two passes
   for (int row = 0; row < kSide; ++row)
-    transform(&samples[static_cast<std::size_t>(row * kSide)], 1, kShift - kExtra);
+    transform(samples.data() + std::ptrdiff_t{row} * kSide, 1, kShift - kExtra);
   for (int column = 0; column < kSide; ++column)
     transform(&samples[static_cast<std::size_t>(column)], kSide, kShift + kExtra);
   const auto coefficient = [&](int k) {
@@ -206,13 +206,15 @@ void take_unit(std::span<const std::uint8_t> rgb, int width_px, int height_px, i
       for (int i = 0; i < 2; ++i) {
         const auto at = static_cast<std::size_t>(line + std::min(left + x + i, width_px - 1)) * 3;
         const int pixel[] = {rgb[at], rgb[at + 1], rgb[at + 2]};
-        unit.luma[x / kSide][static_cast<std::size_t>(y * kSide + x % kSide + i)] =
+        const int place = y * kSide + x % kSide + i;
+        unit.luma[x / kSide][static_cast<std::size_t>(place)] =
             ((19595 * pixel[0] + 38470 * pixel[1] + 7471 * pixel[2] + kHalf) >> 16) - 128;
         r += pixel[0];
         g += pixel[1];
         b += pixel[2];
       }
-      const auto at = static_cast<std::size_t>(y * kSide + x / 2);
+      const int place = y * kSide + x / 2;
+      const auto at = static_cast<std::size_t>(place);
       unit.blue[at] = (-11059 * r - 21709 * g + 32768 * b + 2 * kHalf) >> 17;
       unit.red[at] = (32768 * r - 27439 * g - 5329 * b + 2 * kHalf) >> 17;
     }
