@@ -18,6 +18,10 @@ constexpr Duration kAfterBoundary{1};
 }  // namespace
 
 std::optional<SimTime> Line::send(SimTime at, std::size_t bytes) {
+  const SimTime second = std::chrono::floor<std::chrono::seconds>(at);
+  if (second != std::exchange(second_, second)) in_second_ = bytes_in_second_ = 0;
+  bytes_in_second_ += bytes;
+  if (++in_second_ > kMostInASecond || bytes_in_second_ > kMostBytesInASecond) return std::nullopt;
   if (baud_ <= 0.0) return at + latency_;
   const SimTime begins = std::max(at, free_at_);
   if (begins - at > kBuffer) return std::nullopt;
@@ -151,11 +155,11 @@ void ControllerLinks::schedule(std::size_t uav) {
                          : same_instant(port.for_companion.front().arrives_at));
 }
 
-// What was sent at an ET that ST has not reached has not happened.
-void ControllerLinks::log_in_transit(SimTime st) {
+// What was sent in a step that ST has not reached has not happened (as by radio).
+void ControllerLinks::log_in_transit(SimTime st, const StepGrid& grid) {
   for (std::size_t uav = 0; uav < ports_.size(); ++uav) {
     for (const Message& message : ports_[uav].for_controller)
-      if (message.sent_at <= st)
+      if (grid.floor(message.sent_at) <= st)
         log(st, uav, Direction::kTo, message,
             message.is_lost ? record::kQueueFull : record::kWaiting);
     for (const Message& message : ports_[uav].for_companion)

@@ -23,15 +23,22 @@ namespace tether::coordinator {
 /// bit, eight bits and a stop bit), and then the latency. Pure.
 class Line {
  public:
+  /// Of any line, also of one whose bytes take no time: they bound the record and what is in
+  /// transit.
+  static constexpr std::size_t kMostInASecond = 10'000, kMostBytesInASecond = std::size_t{64} << 20;
+
   Line(double baud, Duration latency) : baud_(baud), latency_(latency) {}
   /// When a message arrives that was sent at `at`; none: there is no room for it in the sender's
-  /// buffer, which has a second's worth of bytes. @pre not before an earlier message
+  /// buffer, which has a second's worth of bytes, or too much was sent since the second of ST
+  /// began. @pre not before an earlier message
   std::optional<SimTime> send(SimTime at, std::size_t bytes);
 
  private:
   double baud_;  // 0: bytes take no time
   Duration latency_;
   SimTime free_at_{};
+  SimTime second_{};
+  std::size_t in_second_ = 0, bytes_in_second_ = 0;
 };
 
 /// The flight controllers and their links to the SUTs, their companions (DESIGN section 2, "Flight
@@ -63,7 +70,7 @@ class ControllerLinks {
   std::optional<Arrival> handle_next(Stepper& stepper, RadioTraffic& inboxes);
 
   /// Records what is on its way at the end of the run.
-  void log_in_transit(SimTime st);
+  void log_in_transit(SimTime st, const StepGrid& grid);
 
  private:
   struct Message {

@@ -380,7 +380,7 @@ RunReport Coordinator::Impl::close_run() {
   if (is_running() && ended.how != RunEnd::kSimulatorLost) stepper_.log_contacts();
   if (is_running()) {
     radio_.log_in_transit(st(), grid());
-    controllers_.log_in_transit(st());
+    controllers_.log_in_transit(st(), grid());
   }
   record::Footer& footer = log_.footer();
   RunReport report{.end = ended.how,

@@ -169,7 +169,8 @@ void Coordinator::Impl::on_request(Session& session, const link::Request& reques
   if (session.hello.concurrent && session.finish) return;
   if (const auto fault = fault_of(request, standing(session), now))
     return break_off(session, link::Refusal::Reason::kBadRequest, *fault);
-  if (const auto* send = std::get_if<link::SendMessage>(&request.body))
+  if (const auto* send = std::get_if<link::SendMessage>(&request.body);
+      send != nullptr && send->to != link::kAutopilot)
     if (const auto flood = radio_.spend(session.uav, st(), send->bytes.size()))
       return expel(session, *flood);
   if (session.replay) check_replay(session, request);

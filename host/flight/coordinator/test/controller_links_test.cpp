@@ -220,10 +220,33 @@ TEST_F(ControllerLinksTest, WithoutAControllerThereIsNoAutopilot) {
   EXPECT_THAT(report.reason, HasSubstr("\"autopilot\""));
 }
 
-TEST_F(ControllerLinksTest, AFlooderLosesItsSessionAndTheOthersAreUnharmed) {
+TEST_F(ControllerLinksTest, WhateverEndsARunEachMessageThatWasSentHasItsFate) {
+  for (std::size_t calls = 8; calls < 16; ++calls) {
+    make_links(2, {});
+    Script honest(20, to_controller(microseconds(450), 1));
+    honest.push_back(finish({}));
+    server_->add_sut(hello(name_of(0)), std::move(honest));
+    Script wrong(calls, to_controller(microseconds(470), 1));
+    wrong.push_back(turn({}, 0.1));
+    server_->add_sut(hello(name_of(1)), std::move(wrong));
+    EXPECT_EQ(run().end, RunEnd::kSutLost);
+    using Message = std::pair<std::string, std::uint64_t>;
+    std::vector<Message> sent, fated;
+    for (const auto& m : recorder_.interactions)
+      if (m.kind == record::kSend) sent.emplace_back(m.uav, m.sequence);
+    for (const auto& m : recorder_.autopilot)
+      if (m.to_controller) fated.emplace_back(m.uav, m.sequence);
+    EXPECT_THAT(sent, testing::SizeIs(testing::Ge(calls)));
+    EXPECT_THAT(fated, testing::IsSupersetOf(sent)) << calls;
+  }
+}
+
+TEST_F(ControllerLinksTest, AFloodLosesWhatIsTooMuchForItsLineAndNothingElse) {
   for (const bool floods : {false, true}) {
     make_links(2, {});
-    Script flood(floods ? 1'500 : 1, to_controller({}, 0xFFFF, 2'000));
+    constexpr std::size_t kLost = 500;
+    const std::size_t sent = floods ? Line::kMostInASecond + kLost : 1;
+    Script flood(sent, to_controller(std::chrono::microseconds(10), 0xFFFF, 2'000));
     flood.push_back(finish(milliseconds(1)));
     server_->add_sut(hello(name_of(0)), std::move(flood));
     Script honest;
@@ -234,8 +257,8 @@ TEST_F(ControllerLinksTest, AFlooderLosesItsSessionAndTheOthersAreUnharmed) {
     honest.push_back(finish(milliseconds(5)));
     server_->add_sut(hello(name_of(1)), std::move(honest));
     const RunReport report = run();
-    EXPECT_EQ(report.end, floods ? RunEnd::kFlooded : RunEnd::kFinished) << report.reason;
-    EXPECT_TRUE(report.suts.at(1).finish);
+    EXPECT_EQ(report.end, RunEnd::kFinished) << report.reason;
+    EXPECT_EQ(taken_[0].size(), floods ? sent - kLost : sent);
     EXPECT_EQ(taken_[1].size(), 20U);
     for (std::size_t i = 0; i < taken_[1].size(); ++i) {
       EXPECT_EQ(taken_[1][i].number, i + 1);

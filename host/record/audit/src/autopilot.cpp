@@ -19,9 +19,10 @@ namespace {
 using LineEntry = record::Logged<record::AutopilotMessage>;
 using record::AutopilotMessage;
 
-// 10 bits for each byte, and a buffer of a second.
+// 10 bits for each byte, a buffer of a second, and so much in a second of any line.
 constexpr double kBitsOfLineByte = 10.0;
-constexpr Wide kLineBuffer = 1'000'000'000;
+constexpr Wide kLineBuffer = 1'000'000'000, kSecond = 1'000'000'000;
+constexpr std::uint64_t kMostInASecond = 10'000, kMostBytesInASecond = std::uint64_t{64} << 20;
 
 const std::set<std::string> kLineOutcomes = {"delivered", "queue_full", "inbox_full", "waiting"};
 
@@ -52,7 +53,7 @@ class AutopilotCheck {
 
  private:
   void check_line(const std::vector<const LineEntry*>& line) {
-    Wide free_at = 0;
+    LineState state;
     const AutopilotMessage* before = nullptr;
     std::uint64_t next = 1;
     for (const LineEntry* entry : line) {
@@ -71,7 +72,7 @@ class AutopilotCheck {
         if (before != nullptr && m.sent_at < before->sent_at)
           report_.add(3, *entry, "message sent at {} after one that was sent at {}", ns(m.sent_at),
                       ns(before->sent_at));
-        check_arrival(*entry, free_at);
+        check_arrival(*entry, state);
       }
       check_taken(*entry);
       before = &m;
@@ -113,20 +114,32 @@ class AutopilotCheck {
     }
   }
 
-  void check_arrival(const LineEntry& entry, Wide& free_at) {
+  struct LineState {
+    Wide free_at = 0, second = 0;
+    std::uint64_t in_second = 0, bytes_in_second = 0;
+  };
+
+  void check_arrival(const LineEntry& entry, LineState& line) {
     const AutopilotMessage& m = entry.message;
     const bool is_full = m.outcome == record::kQueueFull;
     Wide due = wide(m.sent_at);
-    if (controller_.link_baud > 0.0) {
-      const Wide begins = std::max(due, free_at);
+    if (std::exchange(line.second, due / kSecond) != line.second)
+      line.in_second = line.bytes_in_second = 0;
+    line.bytes_in_second += m.bytes;
+    if (++line.in_second > kMostInASecond || line.bytes_in_second > kMostBytesInASecond) {
+      if (!is_full)
+        report_.add(3, entry, "message sent at {} was taken, but is number {} of that second",
+                    ns(m.sent_at), line.in_second);
+    } else if (controller_.link_baud > 0.0) {
+      const Wide begins = std::max(due, line.free_at);
       if (is_full != (begins - due > kLineBuffer))
         report_.add(3, entry, "message sent at {} was {}, but the line was busy for {}",
                     ns(m.sent_at), is_full ? "lost" : "taken", ns(begins - due));
       if (!is_full) {
-        free_at =
+        line.free_at =
             begins + static_cast<Wide>(std::ceil(static_cast<double>(m.bytes) * kBitsOfLineByte *
                                                  1e9 / controller_.link_baud));
-        due = free_at;
+        due = line.free_at;
       }
     } else if (is_full) {
       report_.add(3, entry, "message was lost on a line whose bytes take no time");

@@ -211,6 +211,9 @@ const Planted kOfAutopilots[] = {
        r = flight();
        message(r, true, 12).outcome = "queue_full";
      }},
+    {"TakenBeyondWhatALineCarriesInASecond",
+     {3},
+     [](Record& r) { message(r, true, 12).bytes = std::uint64_t{65} << 20; }},
     {"DeliveredButNotTaken", {0}, [](Record& r) { message(r, true, 12).acted_at.reset(); }},
     {"ReceivedBeforeItArrived",
      {1, 3},
