@@ -49,7 +49,7 @@ class ParameterPort {
     }
     if (!m.is("PARAM_SET")) return;
     const auto index = find_parameter(m.text("param_id"));
-    if (!index) return;
+    if (!index) return outbox.say(4, "parameter not set: unknown " + printable(m.text("param_id")));
     const double value = m.number("param_value");
     const bool is_integer = parameter_infos()[*index].is_integer;
     if (m.integer("param_type") == (is_integer ? kInt32 : kReal32))
@@ -89,6 +89,7 @@ class BuiltIn : public FlightController {
   explicit BuiltIn(const BuiltInSettings& settings)
       : settings_(settings),
         vehicle_(Parameters(settings.parameters)),
+        telemetry_(settings.link_baud),
         outbox_({settings.system_id, kAutopilot}),
         commander_(vehicle_, navigator_, missions_, offboard_, telemetry_, outbox_) {
     vehicle_.limits = settings.limits;

@@ -23,6 +23,11 @@ std::int64_t whole(double value) {
   return value >= 0.0 && value < 1e9 ? std::llround(value) : -1;
 }
 
+bool is_place(double latitude_deg, double longitude_deg, double altitude_m) {
+  return std::abs(latitude_deg) <= kMostLatitude_deg &&
+         std::abs(longitude_deg) <= kMostLongitude_deg && std::abs(altitude_m) <= kMostAltitude_m;
+}
+
 bool is_command(const mavlink::Message& message) {
   return message.is("COMMAND_LONG") || message.is("COMMAND_INT");
 }

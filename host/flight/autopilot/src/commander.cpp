@@ -23,8 +23,13 @@ constexpr int kNavLoiter = 17, kNavReturn = 20, kNavLand = 21, kNavTakeoff = 22,
 
 constexpr double kForce = 21196.0;  // parameter 2 of kArmDisarm: without checks
 
-bool is_place(double latitude_deg, double longitude_deg) {
-  return std::abs(latitude_deg) <= 90.0 && std::abs(longitude_deg) <= 180.0;
+// Parameters that are not numbers ask for what is there already.
+bool is_none_or_place(const Command& command) {
+  const auto is_within = [](double value, double most) {
+    return std::isnan(value) || std::abs(value) <= most;
+  };
+  return is_within(command.p[5], kMostLatitude_deg) &&
+         is_within(command.p[6], kMostLongitude_deg) && is_within(command.p[7], kMostAltitude_m);
 }
 const mavlink::MessageType* type_of(double id) {
   return whole(id) < 0 ? nullptr : mavlink::find_type(static_cast<std::uint32_t>(whole(id)));
@@ -79,7 +84,7 @@ int Commander::run(const Command& command) {
     case kDoReposition:
       return reposition(command);
     case kDoChangeSpeed:
-      if (!(p[2] > 0.0)) return kDenied;
+      if (!(p[2] > 0.0 && std::isfinite(p[2]))) return kDenied;
       navigator_->set_cruise(p[2]);
       return kAccepted;
     case kDoSetHome:
@@ -222,6 +227,7 @@ double Commander::altitude_w(const Command& command) const {
 
 // An altitude that is not above the vehicle is replaced by that of the parameter.
 int Commander::take_off(const Command& command) {
+  if (!is_none_or_place(command)) return kDenied;
   const double z_W = altitude_w(command);
   const bool is_above = std::isfinite(z_W) && z_W > vehicle_->estimate.p_WB.z;
   navigator_->take_off_to(is_above ? std::optional(z_W) : std::nullopt);
@@ -232,11 +238,12 @@ int Commander::take_off(const Command& command) {
 // Parameter 2 must ask for the change of mode.
 int Commander::reposition(const Command& command) {
   if (whole(command.p[2]) != 1) return kUnsupported;
+  if (!is_none_or_place(command)) return kDenied;
   if (!vehicle_->is_armed || vehicle_->is_landed) return kRejected;
   enter(Mode::kHold);
   uav::Vec3 p_W = vehicle_->estimate.p_WB;
   const double z_W = altitude_w(command);
-  if (is_place(command.p[5], command.p[6]) && (command.p[5] != 0.0 || command.p[6] != 0.0)) {
+  if (is_place(command.p[5], command.p[6], 0.0) && (command.p[5] != 0.0 || command.p[6] != 0.0)) {
     sim::Geodetic place = vehicle_->frame.geodetic(p_W);
     place.latitude_deg = command.p[5];
     place.longitude_deg = command.p[6];
@@ -258,7 +265,7 @@ int Commander::set_home(const Command& command) {
   if (command.p[1] > 0.5) {
     vehicle_->home_W = vehicle_->estimate.p_WB;
   } else {
-    if (!is_place(command.p[5], command.p[6]) || !std::isfinite(command.p[7])) return kDenied;
+    if (!is_place(command.p[5], command.p[6], command.p[7])) return kDenied;
     vehicle_->home_W = vehicle_->frame.point({command.p[5], command.p[6], command.p[7]});
   }
   telemetry_->request("HOME_POSITION");

@@ -1,5 +1,7 @@
 #include "missions.h"
 
+#include "command.h"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -13,7 +15,7 @@ constexpr int kMostTries = 20;
 
 // MAV_MISSION_RESULT.
 namespace mission_result {
-constexpr int kAccepted = 0, kUnsupportedFrame = 2, kUnsupported = 3, kNoSpace = 4, kInvalid = 5,
+constexpr int kAccepted = 0, kError = 1, kUnsupportedFrame = 2, kUnsupported = 3, kNoSpace = 4, kInvalid = 5,
               kInvalidSequence = 13, kCancelled = 15;
 }  // namespace mission_result
 
@@ -39,16 +41,26 @@ MissionItem item_of(const mavlink::Message& message) {
   return item;
 }
 
+// How long it is held or waits, and how fast; a time that is no number is none.
+bool has_sound_parameters(const MissionItem& item) {
+  constexpr double kMost_s = 86'400.0;
+  const double first = item.parameters[0], speed_m_s = item.parameters[1];
+  const bool is_timed =
+      item.command == kWaypoint || item.command == kLoiterTime || item.command == kDelay;
+  if (is_timed) return std::isnan(first) || std::abs(first - kMost_s / 2) <= kMost_s / 2;
+  return item.command != kChangeSpeed || std::isfinite(speed_m_s);
+}
+
 int fault_of(const MissionItem& item) {
   if (std::ranges::find(kItems, item.command) == std::end(kItems))
     return mission_result::kUnsupported;
+  if (!has_sound_parameters(item)) return mission_result::kInvalid;
   if (std::ranges::find(kPlaces, item.command) == std::end(kPlaces))
     return mission_result::kAccepted;
   if (std::ranges::find(kFrames, item.frame) == std::end(kFrames))
     return mission_result::kUnsupportedFrame;
-  const bool is_place = std::abs(item.latitude_deg) <= 90.0 &&
-                        std::abs(item.longitude_deg) <= 180.0 && std::isfinite(item.z_m);
-  return is_place ? mission_result::kAccepted : mission_result::kInvalid;
+  return is_place(item.latitude_deg, item.longitude_deg, item.z_m) ? mission_result::kAccepted
+                                                                   : mission_result::kInvalid;
 }
 
 void acknowledge(mavlink::Address to, int result, Outbox& outbox, std::int64_t type = 0) {
@@ -96,6 +108,10 @@ void Missions::on_message(const mavlink::Frame& frame, const Vehicle& vehicle, O
 void Missions::begin_upload(const mavlink::Frame& frame, SimTime now, Outbox& outbox) {
   const auto count = static_cast<std::size_t>(frame.message.integer("count"));
   if (count > kMostItems) return acknowledge(frame.from, mission_result::kNoSpace, outbox);
+  if (upload_ && upload_->from != frame.from) {
+    outbox.say(4, "mission refused: another one is being sent");
+    return acknowledge(frame.from, mission_result::kError, outbox);
+  }
   upload_ = {.from = frame.from, .count = count, .items = {}};
   if (count > 0) return ask(now, outbox);
   replace({});

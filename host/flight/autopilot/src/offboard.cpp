@@ -122,9 +122,11 @@ std::string Offboard::read_target(const mavlink::Message& message, const Vehicle
 std::string Offboard::read_attitude(const mavlink::Message& message, const Vehicle& vehicle) {
   const auto mask = static_cast<unsigned>(message.integer("type_mask"));
   if ((mask & kNoThrust) != 0) return "set-point ignored: it has no thrust";
+  const double thrust = message.number("thrust");
+  if (!(thrust >= 0.0 && thrust <= 1.0)) return "set-point ignored: thrust is not within 0 and 1";
   uav::Setpoint setpoint;
   setpoint.in_heading = false;
-  setpoint.thrust_N = std::clamp(message.number("thrust"), 0.0, 1.0) * vehicle.limits.max_thrust_N;
+  setpoint.thrust_N = thrust * vehicle.limits.max_thrust_N;
   if ((mask & kNoAttitude) == 0) {
     setpoint.mask = uav::kAttitude | uav::kThrust;
     setpoint.q_WB = uav::normalized(

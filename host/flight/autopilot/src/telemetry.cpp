@@ -357,6 +357,12 @@ constexpr StreamRow kStreams[] = {
     {"MISSION_CURRENT", 1.0, mission_current},
 };
 
+constexpr double kBitsOfByte = 10.0, kMostSlowed = 20.0;
+constexpr std::size_t kFrameBytes = 12;  // besides the payload, not signed
+bool is_fixed(const mavlink::MessageType& type) {
+  return type.name == "HEARTBEAT";
+}
+
 const StreamRow* find_stream(std::string_view name) {
   const auto* found = std::ranges::find(kStreams, name, &StreamRow::name);
   return found == std::end(kStreams) ? nullptr : found;
@@ -374,9 +380,22 @@ std::vector<StreamRate> stream_rates() {
   return rates;
 }
 
-Telemetry::Telemetry() {
+Telemetry::Telemetry(double link_baud) : most_B_s_(link_baud / kBitsOfByte / 2.0) {
   for (const StreamRow& row : kStreams)
     streams_.push_back({.type = mavlink::find_type(row.name), .interval = interval_of(row)});
+  fit_line();
+}
+
+void Telemetry::fit_line() {
+  if (most_B_s_ <= 0.0) return;
+  double fixed_B_s = 0.0, wanted_B_s = 0.0;
+  for (const Stream& stream : streams_) {
+    if (!stream.interval) continue;
+    const auto bytes = static_cast<double>(kFrameBytes + stream.type->length);
+    (is_fixed(*stream.type) ? fixed_B_s : wanted_B_s) +=
+        bytes / std::chrono::duration<double>(*stream.interval).count();
+  }
+  slow_by_ = std::clamp(wanted_B_s / std::max(most_B_s_ - fixed_B_s, 1.0), 1.0, kMostSlowed);
 }
 
 void Telemetry::step(const TelemetrySource& source, Outbox& outbox) {
@@ -385,7 +404,12 @@ void Telemetry::step(const TelemetrySource& source, Outbox& outbox) {
     const bool is_due = stream.interval && source.vehicle.now >= stream.next;
     if (is_due) {
       const Duration now = source.vehicle.now.time_since_epoch();
-      stream.next = SimTime((now / *stream.interval + 1) * *stream.interval);
+      const Duration interval =
+          is_fixed(*stream.type) || slow_by_ == 1.0
+              ? *stream.interval
+              : duration_from_seconds(
+                    std::chrono::duration<double>(*stream.interval).count() * slow_by_);
+      stream.next = SimTime((now / interval + 1) * interval);
     }
     if (!is_due && !stream.is_requested) continue;
     stream.is_requested = false;
@@ -412,6 +436,7 @@ bool Telemetry::set_interval(std::string_view name, double interval_us) {
                         : std::optional(duration_from_seconds(
                               std::clamp(interval_us, kLeast_us, kMost_us) * 1e-6));
   stream.next = SimTime{};
+  fit_line();
   return true;
 }
 

@@ -33,7 +33,9 @@ std::vector<StreamRate> stream_rates();
 /// The streams: which messages are sent how often.
 class Telemetry {
  public:
-  Telemetry();
+  /// On a line of so many baud; 0: any. All streams but HEARTBEAT are slowed down by one factor so
+  /// that they take half of it, but to a twentieth at most (docs.px4.io, "MAVLink Messaging").
+  explicit Telemetry(double link_baud = 0.0);
 
   /// What is due at this step.
   void step(const TelemetrySource& source, Outbox& outbox);
@@ -50,6 +52,11 @@ class Telemetry {
     SimTime next{};
     bool is_requested = false;
   };
+  /// The factor, after a change of intervals.
+  void fit_line();
+
+  double most_B_s_;
+  double slow_by_ = 1.0;
   std::vector<Stream> streams_;  // in the order of the table
 };
 

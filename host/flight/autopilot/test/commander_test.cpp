@@ -200,6 +200,12 @@ TEST(Commander, RepositionsInHold) {
   flight.run(5.0);
   EXPECT_NEAR(flight.body.p_WB.y, 9.95, 0.1) << "the place is kept";
   EXPECT_NEAR(flight.yaw(), 1.5708 - 1.0, 0.02) << "clockwise from north";
+  for (const int command : {kReposition, kTakeOffCommand}) {
+    EXPECT_EQ(flight.command(command, {-1, 1, 0, kNone, 999.0, 0, kNone}), kDenied);
+    EXPECT_EQ(flight.command(command, {-1, 1, 0, kNone, 0, -181.0, kNone}), kDenied);
+    EXPECT_EQ(flight.command(command, {-1, 1, 0, kNone, 0, 0, -1e30}), kDenied);
+    EXPECT_EQ(flight.command(command, {-1, 1, 0, kNone, 0, 0, kInfinite}), kDenied);
+  }
 }
 
 TEST(Commander, LandsOrReturnsWithAnEmptyBattery) {

@@ -23,7 +23,8 @@ namespace tether::autopilot {
 
 using mavlink::Message;
 
-inline constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+inline constexpr double kNone = std::numeric_limits<double>::quiet_NaN(),
+                        kInfinite = std::numeric_limits<double>::infinity();
 inline constexpr long kAccepted = 0, kRejected = 1, kDenied = 2, kUnsupported = 3, kFailed = 4;
 inline constexpr int kArmCommand = 400, kTakeOffCommand = 22, kLandCommand = 21,
                      kReturnCommand = 20, kSetMode = 176;

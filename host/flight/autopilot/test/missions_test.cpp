@@ -109,6 +109,10 @@ TEST(Missions, AreRefusedAsAWhole) {
   EXPECT_EQ(flight.upload({item(0, 22), item(1, 16).set("frame", 9)}), 2);
   EXPECT_EQ(flight.upload({item(0, 16).set("x", 1'000'000'000)}), kInvalid);
   EXPECT_EQ(flight.upload({item(0, 16).set("z", kNone)}), kInvalid);
+  EXPECT_EQ(flight.upload({item(0, 16).set("z", -1e30)}), kInvalid);
+  EXPECT_EQ(flight.upload({item(0, 19).set("param1", kInfinite)}), kInvalid);
+  EXPECT_EQ(flight.upload({item(0, 93).set("param1", -1.0)}), kInvalid);
+  EXPECT_EQ(flight.upload({item(0, 178).set("param2", kNone)}), kInvalid);
   EXPECT_EQ(flight.upload(std::vector<Message>(1001, item(0, 22))), kNoSpace);
   flight.heard.clear();
   flight.send(to_us("MISSION_COUNT").set("count", 3).set("mission_type", 1));
@@ -117,6 +121,18 @@ TEST(Missions, AreRefusedAsAWhole) {
   EXPECT_EQ(flight.last("MISSION_ACK")->integer("type"), kUnsupportedItem) << "no fences";
   EXPECT_EQ(flight.last("MISSION_ACK")->integer("mission_type"), 1);
   EXPECT_EQ(flight.last("MISSION_COUNT")->integer("count"), 1) << "the plan before is kept";
+}
+
+TEST(Missions, AreNotTakenOverByAnotherSender) {
+  MissionFlight flight;
+  flight.boot();
+  flight.send(to_us("MISSION_COUNT").set("count", 1));
+  flight.run(0.004);
+  flight.send(to_us("MISSION_COUNT").set("count", 2), {42, 190});
+  flight.run(0.004);
+  EXPECT_EQ(flight.last("MISSION_ACK")->integer("type"), 1);
+  EXPECT_EQ(flight.last("MISSION_ACK")->integer("target_system"), 42);
+  EXPECT_EQ(flight.upload({item(0, 22)}), 0) << "who began it goes on";
 }
 
 TEST(Missions, AreClearedByBothWays) {

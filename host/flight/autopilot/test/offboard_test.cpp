@@ -178,6 +178,7 @@ TEST(Offboard, RefusesNonsenseAndSaysSoOnce) {
       {target(kPositionOnly & ~1024).set("yaw", kNone), "yaw"},
       {zero_q, "attitude"},
       {Message(zero_q).set("q", 1.0, 0).set("thrust", kNone), "thrust"},
+      {Message(zero_q).set("q", 1.0, 0).set("thrust", 5.0), "thrust"},
       {Message(zero_q).set("q", 1.0, 0).set("type_mask", 7 | 64), "no thrust"},
       {Message(zero_q).set("type_mask", 128 | 4), "rates"},
   };

@@ -59,6 +59,24 @@ TEST(Telemetry, ChangesIntervals) {
   EXPECT_EQ(flight.command(kSetInterval, {attitude, kNone}), kFailed);
 }
 
+TEST(Telemetry, FitsHalfOfItsLineExceptForTheHeartbeat) {
+  for (const double baud : {921'600.0, 115'200.0, 57'600.0}) {
+    Flight flight({.link_baud = baud});
+    flight.boot();
+    flight.run(2.0);
+    flight.heard.clear();
+    flight.run(20.0);
+    double bytes_s = 0.0;
+    for (const Message& m : flight.heard) bytes_s += static_cast<double>(m.type().length + 12) / 20.0;
+    EXPECT_NEAR(static_cast<double>(flight.count("HEARTBEAT")), 20.0, 1.0) << baud;
+    if (baud > 500'000.0) {
+      EXPECT_NEAR(static_cast<double>(flight.count("ATTITUDE")), 2'000.0, 1.0);
+    } else {
+      EXPECT_NEAR(bytes_s, baud / 20.0, baud / 200.0) << baud;
+    }
+  }
+}
+
 TEST(Telemetry, SendsOnRequest) {
   Flight flight;
   flight.boot();

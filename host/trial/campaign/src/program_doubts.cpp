@@ -15,20 +15,35 @@
 namespace tether::campaign {
 namespace {
 
-/// The last thing that the flight controller of a UAV refused or warned of; empty: nothing. Long
-/// texts are sent in pieces.
-std::string refusal_of(const record::Record& record, const std::string& uav) {
+/// What a flight controller said, and when.
+struct Text {
+  SimTime at;
+  std::string text;
+};
+
+/// What the flight controller of a UAV refused or warned of. Long texts are sent in pieces.
+std::vector<Text> complaints_of(const record::Record& record, const std::string& uav) {
   constexpr int kWarning = 4;  // MAV_SEVERITY_WARNING; less is worse (mavlink.io, "common")
-  std::string refusal;
+  std::vector<Text> complaints;
   for (const auto& logged : record.autopilot) {
     const record::AutopilotMessage& m = logged.message;
     if (m.uav != uav || !m.of_controller() || m.name != "STATUSTEXT") continue;
     const auto fields = nlohmann::json::parse(m.fields, nullptr, false);
     if (!fields.is_object() || fields.value("severity", kWarning + 1) > kWarning) continue;
-    if (fields.value("chunk_seq", 0) == 0) refusal.clear();
-    refusal += fields.value("text", "");
+    if (fields.value("chunk_seq", 0) == 0 || complaints.empty())
+      complaints.push_back({m.sent_at, ""});
+    complaints.back().text += fields.value("text", "");
   }
-  return refusal;
+  return complaints;
+}
+
+/// The last one that goes with what it did at that time, with a colon before it; empty: none.
+std::string why_at(const std::vector<Text>& complaints, SimTime at) {
+  constexpr Duration kTogether = std::chrono::milliseconds(500);
+  std::string why;
+  for (const Text& complaint : complaints)
+    if (std::chrono::abs(complaint.at - at) <= kTogether) why = ": " + complaint.text;
+  return why;
 }
 
 /// Whether that is OFFBOARD of PX4, or GUIDED (also without GPS) of ArduPilot's copters.
@@ -41,9 +56,13 @@ bool follows_setpoints(int autopilot, int custom_mode) {
 
 /// What its flight controller says of a UAV, as far as it can make a good end doubtful.
 struct Said {
-  std::map<int, int> answers;  ///< the last one to each command (MAV_RESULT)
-  int mission = 0;             ///< the last answer to a mission (MAV_MISSION_RESULT)
-  bool follows = false;        ///< it was in a mode in which it flies set-points
+  struct Answer {
+    int result = 0;
+    SimTime at;
+  };
+  std::map<int, Answer> answers;  ///< the last one to each command (MAV_RESULT)
+  Answer mission;                 ///< the last one to a mission (MAV_MISSION_RESULT)
+  bool follows = false;           ///< it was in a mode in which it flies set-points
   std::optional<SimTime> failsafe_at{};
   bool is_armed = true;  ///< as far as it says
 };
@@ -56,8 +75,8 @@ Said said_of(const record::Record& record, const std::string& uav) {
     const auto fields = nlohmann::json::parse(m.fields, nullptr, false);
     if (!fields.is_object()) continue;
     if (m.name == "COMMAND_ACK")
-      said.answers[fields.value("command", 0)] = fields.value("result", 0);
-    if (m.name == "MISSION_ACK") said.mission = fields.value("type", 0);
+      said.answers[fields.value("command", 0)] = {fields.value("result", 0), m.sent_at};
+    if (m.name == "MISSION_ACK") said.mission = {fields.value("type", 0), m.sent_at};
     if (m.name != "HEARTBEAT" || fields.value("autopilot", 0) == kNoAutopilot) continue;
     said.follows |= follows_setpoints(fields.value("autopilot", 0), fields.value("custom_mode", 0));
     said.is_armed = (fields.value("base_mode", 0) & kArmed) != 0;
@@ -72,8 +91,8 @@ Said said_of(const record::Record& record, const std::string& uav) {
 std::optional<int> denied_command(const Said& said) {
   constexpr int kAccepted = 0, kInProgress = 5;                     // MAV_RESULT
   constexpr int kRequests[] = {410, 510, 511, 512, 519, 520, 521};  // MAV_CMD
-  for (const auto& [command, result] : said.answers)
-    if (result != kAccepted && result != kInProgress &&
+  for (const auto& [command, answer] : said.answers)
+    if (answer.result != kAccepted && answer.result != kInProgress &&
         std::ranges::find(kRequests, command) == std::end(kRequests))
       return command;
   return std::nullopt;
@@ -186,12 +205,14 @@ void check_companion(const record::Record& record, const Motion& motion, bool no
   const auto doubt = [&](const std::string& what) {
     warnings.push_back(doubt_about(sut.uav, what));
   };
-  std::size_t unsigned_ones = 0, ignored = 0, setpoints = 0;
+  std::size_t unsigned_ones = 0, ignored = 0, setpoints = 0, sent = 0, lost = 0;
   for (const auto& logged : record.autopilot) {
     const record::AutopilotMessage& m = logged.message;
     if (m.uav != sut.uav) continue;
     unsigned_ones += m.part == 0 && m.is_unsigned() ? 1U : 0U;
     ignored += m.part == 0 && m.outcome == record::kIgnored ? 1U : 0U;
+    sent += m.part == 0 && !m.of_station ? 1U : 0U;
+    lost += m.part == 0 && m.outcome == record::kQueueFull ? 1U : 0U;
     setpoints += m.is_setpoint() && m.outcome == record::kDelivered ? 1U : 0U;
   }
   if (unsigned_ones > 0)
@@ -204,22 +225,28 @@ void check_companion(const record::Record& record, const Motion& motion, bool no
         fmt::format("has a flight controller that ignored {} of its program: of a frame, a type "
                     "mask or values that it does not fly, or for another system",
                     counted(ignored, "set-point")));
+  if (lost > 0)
+    doubt(fmt::format("has a line to its flight controller that was full: {} of {} were lost. Give "
+                      "it a faster 'link_baud', or ask for fewer messages",
+                      lost, counted(sent, "message")));
   const bool has_sent = std::ranges::any_of(record.autopilot, is_sent);
   if (nothing) return doubt(kDidNothing);
-  const std::string refusal = refusal_of(record, sut.uav);
-  const std::string why = refusal.empty() ? "" : ": " + refusal;
-  if (!sut.reached_goal && !refusal.empty())
-    sut.outcome +=
-        fmt::format("{}the flight controller said{}", sut.outcome.empty() ? "" : "; ", why);
+  const std::vector<Text> complaints = complaints_of(record, sut.uav);
+  if (!sut.reached_goal && !complaints.empty())
+    sut.outcome += fmt::format("{}the flight controller said at ST {:.3f} s: {}",
+                               sut.outcome.empty() ? "" : "; ", to_seconds(complaints.back().at),
+                               complaints.back().text);
   const Said said = said_of(record, sut.uav);
   constexpr const char* kButLast = "has a program that says it reached its goal, but its last ";
   if (const auto command = denied_command(said); sut.reached_goal && command)
-    doubt(fmt::format("{}request for {} was denied{}", kButLast, name_of_command(*command), why));
-  if (sut.reached_goal && said.mission != 0)
-    doubt(fmt::format("{}mission was refused{}", kButLast, why));
+    doubt(fmt::format("{}request for {} was denied{}", kButLast, name_of_command(*command),
+                      why_at(complaints, said.answers.at(*command).at)));
+  if (sut.reached_goal && said.mission.result != 0)
+    doubt(fmt::format("{}mission was refused{}", kButLast, why_at(complaints, said.mission.at)));
   if (sut.reached_goal && said.failsafe_at)
     doubt(fmt::format("has a flight controller that was in a failsafe at ST {:.3f} s{}",
-                      to_seconds(*said.failsafe_at), why));
+                      to_seconds(*said.failsafe_at),
+                      why_at(complaints, *said.failsafe_at)));
   const auto& [first, last, has_moved, has_turned] = motion;
   if (constexpr std::size_t kFew = 5; setpoints > kFew && !said.follows)
     doubt(

@@ -158,7 +158,7 @@ TEST_F(MakeResult, ACompanionHasFlownOnlyIfItHasSentSomething) {
     said.fields = fields;
   }
   EXPECT_THAT(make(record, {{"uav1", false, "it gave up", "{}"}}).reason,
-              HasSubstr("it gave up; the flight controller said: Arming denied: no fix"));
+              HasSubstr("it gave up; the flight controller said at ST 0.000 s: Arming denied: no fix"));
   EXPECT_THAT(make(record, kReached).reason, testing::Not(HasSubstr("Arming")));
   record::AutopilotMessage& answer = record.autopilot.emplace_back().message;
   answer.uav = "uav1";
@@ -166,6 +166,9 @@ TEST_F(MakeResult, ACompanionHasFlownOnlyIfItHasSentSomething) {
   answer.fields = R"({"command": 176, "result": 2})";
   EXPECT_THAT(to_line(make(record, kReached).warnings.at(0)),
               HasSubstr("its last request for a mode was denied: Arming denied: no fix"));
+  record.autopilot.back().message.sent_at = from_ns<SimTime>(600'000'000);
+  EXPECT_THAT(to_line(make(record, kReached).warnings.at(0)), testing::Not(HasSubstr("no fix")))
+      << "that was said of something else";
   record.autopilot.push_back(record.autopilot.back());
   record.autopilot.back().message.fields = R"({"command": 176, "result": 0})";
   record.ground_truth.push_back(record.ground_truth.back());
@@ -214,6 +217,10 @@ TEST_F(MakeResult, WhatTheFlightControllerDeniedOrDidByItselfIsDoubtful) {
   EXPECT_THAT(doubts(), HasSubstr("its last request for the start of a mission was denied"));
   say("COMMAND_ACK", R"({"command": 300, "result": 0})");
   EXPECT_EQ(doubts(), "") << "it was accepted later";
+  say("ATTITUDE", "{}");
+  record.autopilot.back().message.outcome = record::kQueueFull;
+  EXPECT_THAT(doubts(), HasSubstr("was full: 1 of 7 messages were lost"));
+  record.autopilot.pop_back();
   say("MISSION_ACK", R"({"type": 3})");
   EXPECT_THAT(doubts(), HasSubstr("its last mission was refused"));
   record = fine;

@@ -33,7 +33,8 @@ ControllerOptions built_in(const scenario::FlightController& controller,
       .limits = limits,
       .hover_thrust_N = own.airframe.mass_kg * world.gravity_m_s2,
       .starts_in_air = controller.starts_in_air,
-      .parameters = controller.parameters};
+      .parameters = controller.parameters,
+      .link_baud = controller.link_baud};
   return {.name = "built-in",
           .estimate = estimator == own.sensors.end() ? "truth" : estimator->name,
           .make = [settings] { return make_built_in(settings); },

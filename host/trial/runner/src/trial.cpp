@@ -61,7 +61,7 @@ std::vector<campaign::TaskEnd> task_ends(const TrialSpec& spec,
     if (spec.scenario.uavs[i].sut.is_as_is && !finish->reached_goal) {
       const auto output = os::read_whole(spec.folder / fmt::format("sut-{}.log", uav));
       if (const std::string last = os::last_line(output); !last.empty())
-        outcome += fmt::format("; the last line of its output: {}", last);
+        outcome += fmt::format("; the last line of its output: {}", printable(last));
     }
     ends.push_back({uav, finish->reached_goal, std::move(outcome), finish->details});
   }

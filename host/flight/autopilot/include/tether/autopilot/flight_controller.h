@@ -114,6 +114,7 @@ struct BuiltInSettings {
   double hover_thrust_N = 0.0;
   bool starts_in_air = false;                  ///< armed, in Hold; else landed and disarmed
   std::map<std::string, double> parameters{};  ///< values of parameters, by name
+  double link_baud = 0.0;  ///< half of it is for telemetry, as PX4 does it; 0: any rate
 };
 
 /// The built-in flight controller. It behaves at its port as PX4's documentation says of a
