@@ -125,6 +125,7 @@ class StoppedSut : public RunTest {
   void expect_noted(Process& process, pid_t sut) {
     EXPECT_EQ(process.wait(60s).code, 0) << process.err();
     EXPECT_THAT(result()["this_run"]["notes"].dump(), HasSubstr(std::to_string(sut)));
+    EXPECT_THAT(result()["this_run"]["stopped_program"], HasSubstr(std::to_string(sut)));
   }
 };
 

@@ -154,10 +154,8 @@ std::string unscaled_computing(const Compared& missed, const std::vector<Compare
 /// did not.
 std::string stopped(const campaign::TrialResult& flight, const std::optional<Pace>& pace) {
   if (!pace || !pace->speed.measures_waits()) return "";
-  const auto note = std::ranges::find_if(flight.this_run.notes, [](const std::string& one) {
-    return one.find(" was stopped (") != std::string::npos;
-  });
-  return note == flight.this_run.notes.end() ? "" : *note + ", and its clock went on";
+  const std::string& note = flight.this_run.stopped_program;
+  return note.empty() ? "" : note + ", and its clock went on";
 }
 
 /// That the time limit ended a flight which had missed nothing else yet; empty: it is not so.

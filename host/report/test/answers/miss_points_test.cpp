@@ -125,9 +125,7 @@ TEST_F(MissReasons, AreTheSensorsWhereAnEquallyFastConditionWithOthersReachesIt)
 TEST_F(MissReasons, CanBeThatTheProgramWasStoppedWhileItsClockWentOn) {
   const std::size_t board = add("board", 0, 5, measured(0.2));
   for (campaign::TrialResult& trial : trials(board))
-    trial.this_run.notes = {
-        "process 7 of the SUT of UAV \"uav1\" was stopped (by a signal or a "
-        "debugger) at ST 0.180000 s"};
+    trial.this_run.stopped_program = "process 7 of the SUT of UAV \"uav1\" halted at ST 0.18 s";
   EXPECT_EQ(verdict().advice[0].kind, Advice::Kind::kTryFaster) << "a CPU clock does not go on";
   program(board).clock.kind = computer::ClockKind::kWall;
   EXPECT_THAT(answers_of({verdict()})[0].rest,

@@ -232,6 +232,7 @@ void fields(auto& io, Maybe<ThisRun> auto& m) {
   io.optional("target", m.target);
   io.some("more_targets", m.more_targets);
   io.some("notes", m.notes);
+  io.some("stopped_program", m.stopped_program);
   io.some("doubts", m.doubts);
   io.some("loads", m.loads);
   io.some("sut_files", m.sut_files);

@@ -35,6 +35,7 @@ TEST_F(Result, ReadsBackWithEverythingMissing) {
   failed.this_run.attempts = 2;
   failed.this_run.first_failure = "no port either";
   failed.this_run.notes = {"a SUT was stopped", "this machine was suspended"};
+  failed.this_run.stopped_program = failed.this_run.notes[0];
   failed.this_run.doubts = {{Doubt::Kind::kUnseenWait, "uav1", 4.9},
                             {Doubt::Kind::kBusyMachine, "pi", 0.3}};
   failed.this_run.loads = {{"pi", 0.3, 0.0}};

@@ -172,6 +172,7 @@ campaign::TrialResult fly(const TrialSpec& spec, const StartSimulator& start,
     for (const MachineReadings& machine : conducted.others)
       result.this_run.more_targets.push_back(report_of(machine.info, machine.after, result.reason));
     result.this_run.notes = conducted.notes;
+    result.this_run.stopped_program = conducted.stopped_program;
     result.this_run.doubts = conducted.doubts;
     std::ranges::move(of_other_arguments(inputs.replayed, conducted.record.header),
                       std::back_inserter(result.warnings));

@@ -330,9 +330,10 @@ Conducted TrialRun::conduct() {
     if (auto doubt = doubt_of(loads.back(), *clock == CLOCK_MONOTONIC))
       doubted.push_back(std::move(*doubt));
   }
-  return {std::move(end.report), memory_.take(),     std::move(notes_),
-          std::move(doubted),    std::move(loads),   target_,
-          target_after_,         std::move(others_), std::move(bad_exits_)};
+  return {
+      std::move(end.report), memory_.take(),       std::move(notes_), std::move(stopped_program_),
+      std::move(doubted),    std::move(loads),     target_,           target_after_,
+      std::move(others_),    std::move(bad_exits_)};
 }
 
 TrialEnd TrialRun::fly(std::optional<MachineWatch>& machine) {
@@ -381,6 +382,7 @@ TrialEnd TrialRun::fly(std::optional<MachineWatch>& machine) {
   if (machine) machine->end_of_run();
   refusals_.close();
   notes_ = stalls.notes(host_clocks());
+  stopped_program_ = stalls.stopped_program();
   for (const coordinator::SutReport& sut : end.report.suts)
     for (const auto& [sensor, count] : sut.unqueued)
       notes_.push_back(fmt::format("{}{} measurements of '{}' of {} had no place in its queue",

@@ -49,6 +49,7 @@ struct Conducted {
   coordinator::RunReport report;
   record::Record record;  ///< as in the file
   std::vector<std::string> notes;
+  std::string stopped_program;  ///< of these notes: campaign::ThisRun
   std::vector<campaign::Doubt> doubts;
   std::vector<campaign::MachineLoad> loads;
   // Not in the record of a repeatable run.
@@ -101,6 +102,7 @@ class TrialRun {
   bool have_all_joined_ = false;
   record::Readings target_after_;
   std::vector<std::string> notes_;
+  std::string stopped_program_;
   std::vector<std::string> bad_exits_;
 };
 

@@ -58,6 +58,7 @@ std::string StallWatch::find_stopped_sut(const coordinator::RunStatus& status) {
   if (!stopped) return "";
   const std::string note = fmt::format("{} at ST {:.6f} s", *stopped, to_seconds(status.st));
   if (std::find(notes_.begin(), notes_.end(), note) == notes_.end()) notes_.push_back(note);
+  if (stopped_program_.empty()) stopped_program_ = note;
   return "; " + *stopped;
 }
 

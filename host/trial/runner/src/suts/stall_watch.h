@@ -32,6 +32,8 @@ class StallWatch {
   std::string check(const coordinator::RunStatus& status, HostClocks now);
   /// At the end of the run: notes for the result, one line each.
   std::vector<std::string> notes(HostClocks now) const;
+  /// Of these, the first one on a SUT that was stopped; empty: none was.
+  const std::string& stopped_program() const { return stopped_program_; }
 
  private:
   std::string find_stopped_sut(const coordinator::RunStatus& status);
@@ -42,6 +44,7 @@ class StallWatch {
   WallTime last_asked_{};
   bool stalled_ = false;
   std::vector<std::string> notes_;
+  std::string stopped_program_;
 };
 
 /// A process of this group that is stopped by a signal or a debugger, if there is one.

@@ -55,6 +55,7 @@ TEST(StallWatch, NotesAStoppedSutOnce) {
     EXPECT_EQ(watch.check(status("blocked"), at(milliseconds(20 * i))), "");
   EXPECT_EQ(asked, 3);
   EXPECT_THAT(watch.notes(at(seconds(3))), ElementsAre("it was stopped at ST 3.000000 s"));
+  EXPECT_EQ(watch.stopped_program(), "it was stopped at ST 3.000000 s");
 }
 
 TEST(StallWatch, NotesAStallOfTheCoordinator) {
@@ -64,6 +65,7 @@ TEST(StallWatch, NotesAStallOfTheCoordinator) {
   watch.check(status(""), at(milliseconds(7'500)));
   EXPECT_THAT(watch.notes(at(milliseconds(7'500))),
               ElementsAre(AllOf(HasSubstr("5.5 s"), HasSubstr("ST 3.000 s"))));
+  EXPECT_EQ(watch.stopped_program(), "");
 }
 
 TEST(StallWatch, NotesASuspendedMachine) {

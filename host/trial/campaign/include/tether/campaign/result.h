@@ -185,8 +185,10 @@ struct ThisRun {
   std::optional<TargetReport> target{};      ///< none if it was not read
   std::vector<TargetReport> more_targets{};  ///< further machines of a mixed fleet
   std::vector<std::string> notes{};          ///< unintended stalls of the run, one line each
-  std::vector<Doubt> doubts{};               ///< in the order of their kinds and subjects
-  std::vector<MachineLoad> loads{};          ///< of machines whose clock was read; also if normal
+  /// The note on the first program that a signal or a debugger stopped; empty: none was.
+  std::string stopped_program{};
+  std::vector<Doubt> doubts{};           ///< in the order of their kinds and subjects
+  std::vector<MachineLoad> loads{};      ///< of machines whose clock was read; also if normal
   std::vector<std::string> sut_files{};  ///< written by SUTs; paths in the trial's folder, sorted
   std::optional<SimulatorFigures> simulator{};  ///< none: not measured
   std::optional<Sizing> sizing{};               ///< none: not possible
