@@ -15,8 +15,8 @@ constexpr int kMostTries = 20;
 
 // MAV_MISSION_RESULT.
 namespace mission_result {
-constexpr int kAccepted = 0, kError = 1, kUnsupportedFrame = 2, kUnsupported = 3, kNoSpace = 4, kInvalid = 5,
-              kInvalidSequence = 13, kCancelled = 15;
+constexpr int kAccepted = 0, kError = 1, kUnsupportedFrame = 2, kUnsupported = 3, kNoSpace = 4,
+              kInvalid = 5, kInvalidSequence = 13, kCancelled = 15;
 }  // namespace mission_result
 
 constexpr int kItems[] = {kWaypoint, kLoiterUnlimited, kLoiterTime, kReturnToLaunch,

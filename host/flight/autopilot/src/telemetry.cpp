@@ -407,8 +407,8 @@ void Telemetry::step(const TelemetrySource& source, Outbox& outbox) {
       const Duration interval =
           is_fixed(*stream.type) || slow_by_ == 1.0
               ? *stream.interval
-              : duration_from_seconds(
-                    std::chrono::duration<double>(*stream.interval).count() * slow_by_);
+              : duration_from_seconds(std::chrono::duration<double>(*stream.interval).count() *
+                                      slow_by_);
       stream.next = SimTime((now / interval + 1) * interval);
     }
     if (!is_due && !stream.is_requested) continue;

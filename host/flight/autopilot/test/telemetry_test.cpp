@@ -67,7 +67,8 @@ TEST(Telemetry, FitsHalfOfItsLineExceptForTheHeartbeat) {
     flight.heard.clear();
     flight.run(20.0);
     double bytes_s = 0.0;
-    for (const Message& m : flight.heard) bytes_s += static_cast<double>(m.type().length + 12) / 20.0;
+    for (const Message& m : flight.heard)
+      bytes_s += static_cast<double>(m.type().length + 12) / 20.0;
     EXPECT_NEAR(static_cast<double>(flight.count("HEARTBEAT")), 20.0, 1.0) << baud;
     if (baud > 500'000.0) {
       EXPECT_NEAR(static_cast<double>(flight.count("ATTITUDE")), 2'000.0, 1.0);

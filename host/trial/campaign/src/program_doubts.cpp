@@ -226,9 +226,10 @@ void check_companion(const record::Record& record, const Motion& motion, bool no
                     "mask or values that it does not fly, or for another system",
                     counted(ignored, "set-point")));
   if (lost > 0)
-    doubt(fmt::format("has a line to its flight controller that was full: {} of {} were lost. Give "
-                      "it a faster 'link_baud', or ask for fewer messages",
-                      lost, counted(sent, "message")));
+    doubt(
+        fmt::format("has a line to its flight controller that was full: {} of {} were lost. Give "
+                    "it a faster 'link_baud', or ask for fewer messages",
+                    lost, counted(sent, "message")));
   const bool has_sent = std::ranges::any_of(record.autopilot, is_sent);
   if (nothing) return doubt(kDidNothing);
   const std::vector<Text> complaints = complaints_of(record, sut.uav);
@@ -245,8 +246,7 @@ void check_companion(const record::Record& record, const Motion& motion, bool no
     doubt(fmt::format("{}mission was refused{}", kButLast, why_at(complaints, said.mission.at)));
   if (sut.reached_goal && said.failsafe_at)
     doubt(fmt::format("has a flight controller that was in a failsafe at ST {:.3f} s{}",
-                      to_seconds(*said.failsafe_at),
-                      why_at(complaints, *said.failsafe_at)));
+                      to_seconds(*said.failsafe_at), why_at(complaints, *said.failsafe_at)));
   const auto& [first, last, has_moved, has_turned] = motion;
   if (constexpr std::size_t kFew = 5; setpoints > kFew && !said.follows)
     doubt(

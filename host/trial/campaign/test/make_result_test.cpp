@@ -157,8 +157,9 @@ TEST_F(MakeResult, ACompanionHasFlownOnlyIfItHasSentSomething) {
     said.name = "STATUSTEXT";
     said.fields = fields;
   }
-  EXPECT_THAT(make(record, {{"uav1", false, "it gave up", "{}"}}).reason,
-              HasSubstr("it gave up; the flight controller said at ST 0.000 s: Arming denied: no fix"));
+  EXPECT_THAT(
+      make(record, {{"uav1", false, "it gave up", "{}"}}).reason,
+      HasSubstr("it gave up; the flight controller said at ST 0.000 s: Arming denied: no fix"));
   EXPECT_THAT(make(record, kReached).reason, testing::Not(HasSubstr("Arming")));
   record::AutopilotMessage& answer = record.autopilot.emplace_back().message;
   answer.uav = "uav1";
