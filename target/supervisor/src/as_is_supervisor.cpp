@@ -201,8 +201,20 @@ void AsIsSupervisor::on_request(CallerId caller, link::Request request) {
   if (read == nullptr || read->only_if_available || read->skips ||
       read->sensor >= vehicle_->catalogue().sensors.size())
     return answer(caller, request.sequence, std::move(request.body));
+  tell_if_shared(caller, read->sensor);
   reads_.push_back({caller, request.sequence, *read});
   answer_reads();
+}
+
+// Seen by turns: one that reads after another, which has ended with it, shares nothing.
+void AsIsSupervisor::tell_if_shared(CallerId caller, std::uint32_t sensor) {
+  Readers& readers = readers_[sensor];
+  const bool is_another = std::exchange(readers.last, caller) != caller;
+  const bool is_first = readers.all.insert(caller).second;
+  if (!is_another || is_first || std::exchange(readers.are_told, true)) return;
+  doubt("has programs that share the measurements of sensor '" +
+        vehicle_->catalogue().sensors[sensor].name +
+        "': each goes to one of them only. Let one program read it and pass it on");
 }
 
 std::string AsIsSupervisor::reason_to_refuse(CallerId caller, const Body& body) const {
@@ -260,6 +272,7 @@ void AsIsSupervisor::on_gone(CallerId caller) {
   const auto is_of_caller = [caller](const auto& call) { return call.caller == caller; };
   std::erase_if(pulls_, is_of_caller);
   std::erase_if(reads_, is_of_caller);
+  for (auto& [sensor, readers] : readers_) readers.all.erase(caller);
 }
 
 void AsIsSupervisor::tell(CallerId line, link::Reply event) {
@@ -356,11 +369,15 @@ void AsIsSupervisor::tell_if_woken(Duration used) {
   const Duration more = page_.used() - used;
   if (more == Duration(0) || (more < kLeastWoken && threads_.are_all_waiting(page_))) return;
   if (++wakes_ != kWakes) return;
-  static_cast<void>(vehicle_->annotate(
-      "as_is",
-      R"({"doubt": "has a program that waited for something outside of its processes, such as a )"
-      R"(lock, another computer or a server: how long that takes depends on the simulation's )"
-      R"(speed. Start a server with the program; with --one-process, such waits are seen"})"));
+  doubt(
+      "has a program that waited for something outside of its processes, such as a lock, another "
+      "computer or a server: how long that takes depends on the simulation's speed. Start a server "
+      "with the program; with --one-process, such waits are seen");
+}
+
+/// What makes the answer doubtful, in words without quotation marks.
+void AsIsSupervisor::doubt(const std::string& what) {
+  static_cast<void>(vehicle_->annotate("as_is", R"({"doubt": ")" + what + R"("})"));
 }
 
 /// Lets ET go on to what comes first.

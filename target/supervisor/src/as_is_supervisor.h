@@ -80,6 +80,8 @@ class AsIsSupervisor {
   bool are_all_waiting();
   bool lead();
   void tell_if_woken(Duration used);
+  void tell_if_shared(CallerId caller, std::uint32_t sensor);
+  void doubt(const std::string& what);
   Duration slice();
   void publish();
   bool check(const Failure& failure);
@@ -96,8 +98,14 @@ class AsIsSupervisor {
   std::multiset<CallerId> unheard_;  // what they were told
   std::set<CallerId> agents_;        // who call for the preloaded library
   std::vector<Pull> pulls_;          // to be answered when all have heard
-  std::vector<Read> reads_;          // to be answered when there is a measurement
-  client::Computed& computed_;       // by processes that have ended
+  struct Readers {
+    CallerId last = 0;
+    std::set<CallerId> all;
+    bool are_told = false;
+  };
+  std::map<std::uint32_t, Readers> readers_;  // of each sensor
+  std::vector<Read> reads_;                   // to be answered when there is a measurement
+  client::Computed& computed_;                // by processes that have ended
   bool is_over_ = false, is_known_to_be_used_ = false;
   int wakes_ = 0;  // from outside
   int interrupts_ = 0;

@@ -47,6 +47,12 @@ class AsIsGroup : public testing::Test {
         << output.err << said();
     EXPECT_EQ(audit_code(folder_ / "out"), 0);
   }
+  /// For programs in Python on the client library.
+  static std::string with_library() {
+    const auto prefix = std::filesystem::path(TETHER_EXEC_PROGRAM).parent_path().parent_path();
+    return "export PYTHONPATH=" TETHER_SOURCE_DIR "/python TETHER_CLIENT_LIBRARY=" +
+           (prefix / "lib" / "libtether-client.so.1").string() + "\n";
+  }
   std::string said() const { return read_text(folder_ / "out" / "sut-uav1.log"); }
 
   TempFolder folder_;
@@ -244,8 +250,6 @@ TEST_F(AsIsGroup, ProgramsThatAreStoppedSeeNoGap) {
 // A driver that a team writes on Tether's library, among programs that know nothing of it: what it
 // waits for delays nobody, and what it computes is charged to the program.
 TEST_F(AsIsGroup, AProgramOnTheClientLibraryReadsBesideOthers) {
-  const auto library =
-      std::filesystem::path(TETHER_EXEC_PROGRAM).parent_path().parent_path() / "lib";
   write_text(folder_ / "driver.py", R"(
 import threading, time, tether
 vehicle = tether.connect()
@@ -278,14 +282,35 @@ assert sorted(late_s)[75] < 0.002, late_s
 )");
   flight_controller_ = "none";
   const Output output =
-      fly("export PYTHONPATH=" TETHER_SOURCE_DIR "/python TETHER_CLIENT_LIBRARY=" +
-          (library / "libtether-client.so.1").string() + "\npython3 " +
-          (folder_ / "other.py").string() + " &\npython3 " + (folder_ / "driver.py").string() +
-          " || exit 1\nwait %1\n");
+      fly(with_library() + "python3 " + (folder_ / "other.py").string() + " &\npython3 " +
+          (folder_ / "driver.py").string() + " || exit 1\nwait %1\n");
   EXPECT_EQ(read_result(folder_ / "out")["suts"][0]["reached_goal"], true) << output.err << said();
   EXPECT_THAT(run(tether({"timing", folder_ / "out"})).out, HasSubstr("“python3 driver.py” takes"))
       << "each process is a stage";
   EXPECT_EQ(audit_code(folder_ / "out"), 0);
+}
+
+TEST_F(AsIsGroup, ProgramsThatShareASensorMakeTheAnswerDoubtful) {
+  flight_controller_ = "none";
+  write_text(folder_ / "read.py", R"(
+import sys, tether
+vehicle = tether.connect()
+sensor = vehicle.imu(0) if sys.argv[1] == "imu" else vehicle.range(0)
+for _ in range(20):
+    sensor.read()
+)");
+  const std::string read = "python3 " + (folder_ / "read.py").string();
+  for (const bool is_shared : {false, true}) {
+    const std::string other = read + (is_shared ? " imu" : " range");
+    const Output output =
+        fly(with_library() + other + " &\n" + read + " imu || exit 1\nwait %1\n" + read + " imu\n");
+    const auto result = read_result(folder_ / "out");
+    EXPECT_EQ(result["suts"][0]["reached_goal"], true) << output.err << said();
+    const std::string warnings = result.value("warnings", nlohmann::json::array()).dump();
+    EXPECT_EQ(warnings.find("share the measurements of sensor 'imu'") != std::string::npos,
+              is_shared)
+        << warnings;
+  }
 }
 
 // By real time, what is outside answers; ET goes on as fast as the simulation meanwhile.
