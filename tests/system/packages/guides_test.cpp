@@ -76,7 +76,7 @@ class Guide : public testing::Test {
 };
 
 TEST_F(Guide, OfAProgramAndOfAUavWorkAsWritten) {
-  const Output program = followed("your-own-sut.md", {{"trials = 10", "trials = 1"}});
+  const Output program = followed("your-own-sut.md", {{"--trials 10", "--trials 1"}});
   EXPECT_EQ(program.code, 0) << program.out << program.err;
   const auto folder = *home_ / "your-own-sut.md/my_program/out";
   for (const char* flight : {"mine", "mine_slow"})
