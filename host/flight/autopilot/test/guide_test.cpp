@@ -23,7 +23,7 @@ std::string guide() {
 std::string parameters_table() {
   std::string table = "| parameter | at first | limits | meaning |\n|---|---:|---|---|\n";
   for (const ParameterInfo& info : parameter_infos())
-    table += fmt::format("| `{}` | {:g} | {:g} to {:g} | {} |\n", info.name, info.initial, info.min,
+    table += fmt::format("| `{}` | {:g} | {:g}…{:g} | {} |\n", info.name, info.initial, info.min,
                          info.max, info.meaning);
   return table;
 }
