@@ -13,7 +13,11 @@
 namespace tether::autopilot {
 namespace {
 
-using namespace command_result;
+using command_result::kAccepted;
+using command_result::kDenied;
+using command_result::kFailed;
+using command_result::kRejected;
+using command_result::kUnsupported;
 
 // MAV_CMD.
 constexpr int kNavLoiter = 17, kNavReturn = 20, kNavLand = 21, kNavTakeoff = 22, kDoSetMode = 176,

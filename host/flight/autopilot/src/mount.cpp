@@ -34,7 +34,9 @@ bool point(std::span<const uav::Joint> joints, const MountAngles& wanted,
 }
 
 int Mount::run(const Command& command) {
-  using namespace command_result;
+  using command_result::kAccepted;
+  using command_result::kDenied;
+  using command_result::kUnsupported;
   const auto& p = command.p;
   constexpr double kKeep = std::numeric_limits<double>::quiet_NaN();
   MountAngles wanted{p[1], p[2], p[3]};
