@@ -24,8 +24,9 @@ std::int64_t whole(double value) {
 }
 
 bool is_place(double latitude_deg, double longitude_deg, double altitude_m) {
-  return std::abs(latitude_deg) <= kMostLatitude_deg &&
-         std::abs(longitude_deg) <= kMostLongitude_deg && std::abs(altitude_m) <= kMostAltitude_m;
+  constexpr double kMostAltitude_m = 1e5;
+  return std::abs(latitude_deg) <= 90.0 && std::abs(longitude_deg) <= 180.0 &&
+         std::abs(altitude_m) <= kMostAltitude_m;
 }
 
 bool is_command(const mavlink::Message& message) {

@@ -22,9 +22,7 @@ struct Command {
   bool is_place_relative = false;  ///< its altitude is over home
 };
 
-/// Limits of places that a UAV can be asked to fly to.
-inline constexpr double kMostLatitude_deg = 90.0, kMostLongitude_deg = 180.0, kMostAltitude_m = 1e5;
-/// False also if one of them is no number.
+/// Whether a UAV can be asked to fly there. False also if one of them is no number.
 bool is_place(double latitude_deg, double longitude_deg, double altitude_m);
 
 bool is_command(const mavlink::Message& message);

@@ -29,11 +29,8 @@ constexpr double kForce = 21196.0;  // parameter 2 of kArmDisarm: without checks
 
 // Parameters that are not numbers ask for what is there already.
 bool is_none_or_place(const Command& command) {
-  const auto is_within = [](double value, double most) {
-    return std::isnan(value) || std::abs(value) <= most;
-  };
-  return is_within(command.p[5], kMostLatitude_deg) &&
-         is_within(command.p[6], kMostLongitude_deg) && is_within(command.p[7], kMostAltitude_m);
+  const auto or_0 = [](double value) { return std::isnan(value) ? 0.0 : value; };
+  return is_place(or_0(command.p[5]), or_0(command.p[6]), or_0(command.p[7]));
 }
 const mavlink::MessageType* type_of(double id) {
   return whole(id) < 0 ? nullptr : mavlink::find_type(static_cast<std::uint32_t>(whole(id)));

@@ -387,7 +387,6 @@ Telemetry::Telemetry(double link_baud) : most_B_s_(link_baud / kBitsOfByte / 2.0
 }
 
 void Telemetry::fit_line() {
-  if (most_B_s_ <= 0.0) return;
   double fixed_B_s = 0.0, wanted_B_s = 0.0;
   for (const Stream& stream : streams_) {
     if (!stream.interval) continue;
@@ -395,7 +394,17 @@ void Telemetry::fit_line() {
     (is_fixed(*stream.type) ? fixed_B_s : wanted_B_s) +=
         bytes / std::chrono::duration<double>(*stream.interval).count();
   }
-  slow_by_ = std::clamp(wanted_B_s / std::max(most_B_s_ - fixed_B_s, 1.0), 1.0, kMostSlowed);
+  const double slow_by =
+      most_B_s_ > 0.0
+          ? std::clamp(wanted_B_s / std::max(most_B_s_ - fixed_B_s, 1.0), 1.0, kMostSlowed)
+          : 1.0;
+  for (Stream& stream : streams_) {
+    if (!stream.interval) continue;
+    stream.slowed = *stream.interval;
+    if (slow_by > 1.0 && !is_fixed(*stream.type))
+      stream.slowed =
+          duration_from_seconds(std::chrono::duration<double>(*stream.interval).count() * slow_by);
+  }
 }
 
 void Telemetry::step(const TelemetrySource& source, Outbox& outbox) {
@@ -404,12 +413,7 @@ void Telemetry::step(const TelemetrySource& source, Outbox& outbox) {
     const bool is_due = stream.interval && source.vehicle.now >= stream.next;
     if (is_due) {
       const Duration now = source.vehicle.now.time_since_epoch();
-      const Duration interval =
-          is_fixed(*stream.type) || slow_by_ == 1.0
-              ? *stream.interval
-              : duration_from_seconds(std::chrono::duration<double>(*stream.interval).count() *
-                                      slow_by_);
-      stream.next = SimTime((now / interval + 1) * interval);
+      stream.next = SimTime((now / stream.slowed + 1) * stream.slowed);
     }
     if (!is_due && !stream.is_requested) continue;
     stream.is_requested = false;

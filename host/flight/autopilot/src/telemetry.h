@@ -48,15 +48,15 @@ class Telemetry {
  private:
   struct Stream {
     const mavlink::MessageType* type;
-    std::optional<Duration> interval;  // none: only on request
+    std::optional<Duration> interval;  // as it was asked for; none: only on request
+    Duration slowed{};                 // as the line has room for it
     SimTime next{};
     bool is_requested = false;
   };
-  /// The factor, after a change of intervals.
+  /// After a change of intervals: slows them down.
   void fit_line();
 
-  double most_B_s_;
-  double slow_by_ = 1.0;
+  double most_B_s_;              // 0: any
   std::vector<Stream> streams_;  // in the order of the table
 };
 

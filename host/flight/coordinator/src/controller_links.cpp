@@ -18,10 +18,8 @@ constexpr Duration kAfterBoundary{1};
 }  // namespace
 
 std::optional<SimTime> Line::send(SimTime at, std::size_t bytes) {
-  const SimTime second = std::chrono::floor<std::chrono::seconds>(at);
-  if (second != std::exchange(second_, second)) in_second_ = bytes_in_second_ = 0;
-  bytes_in_second_ += bytes;
-  if (++in_second_ > kMostInASecond || bytes_in_second_ > kMostBytesInASecond) return std::nullopt;
+  second_.add(at, bytes);
+  if (second_.has_too_many() || second_.has_too_much()) return std::nullopt;
   if (baud_ <= 0.0) return at + latency_;
   const SimTime begins = std::max(at, free_at_);
   if (begins - at > kBuffer) return std::nullopt;

@@ -2,6 +2,7 @@
 
 #include "radio_traffic.h"
 #include "run_log.h"
+#include "sessions/validator.h"
 #include "stepper.h"
 
 #include <cstddef>
@@ -23,10 +24,6 @@ namespace tether::coordinator {
 /// bit, eight bits and a stop bit), and then the latency. Pure.
 class Line {
  public:
-  /// Of any line, also of one whose bytes take no time: they bound the record and what is in
-  /// transit.
-  static constexpr std::size_t kMostInASecond = 10'000, kMostBytesInASecond = std::size_t{64} << 20;
-
   Line(double baud, Duration latency) : baud_(baud), latency_(latency) {}
   /// When a message arrives that was sent at `at`; none: there is no room for it in the sender's
   /// buffer, which has a second's worth of bytes, or too much was sent since the second of ST
@@ -37,8 +34,7 @@ class Line {
   double baud_;  // 0: bytes take no time
   Duration latency_;
   SimTime free_at_{};
-  SimTime second_{};
-  std::size_t in_second_ = 0, bytes_in_second_ = 0;
+  SecondOfSending second_;
 };
 
 /// The flight controllers and their links to the SUTs, their companions (DESIGN section 2, "Flight

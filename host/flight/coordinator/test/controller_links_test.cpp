@@ -245,7 +245,7 @@ TEST_F(ControllerLinksTest, AFloodLosesWhatIsTooMuchForItsLineAndNothingElse) {
   for (const bool floods : {false, true}) {
     make_links(2, {});
     constexpr std::size_t kLost = 500;
-    const std::size_t sent = floods ? Line::kMostInASecond + kLost : 1;
+    const std::size_t sent = floods ? kMaxMessagesInASecond + kLost : 1;
     Script flood(sent, to_controller(std::chrono::microseconds(10), 0xFFFF, 2'000));
     flood.push_back(finish(milliseconds(1)));
     server_->add_sut(hello(name_of(0)), std::move(flood));

@@ -194,22 +194,28 @@ MaybeFault AnnotationBudget::spend(const link::Annotation& note) {
                fmt::format("more than {} MiB of annotations", kMaxAnnotatedBytes >> 20)};
 }
 
+void SecondOfSending::add(SimTime at, std::size_t bytes) {
+  const SimTime second = std::chrono::floor<std::chrono::seconds>(at);
+  if (second != std::exchange(begin_, second)) messages_ = bytes_ = 0;
+  ++messages_;
+  bytes_ += bytes;
+}
+
 MaybeFault RadioBudget::spend(SimTime st, std::size_t bytes) {
   if (st != std::exchange(step_, st)) in_step_ = 0;
-  const SimTime second = std::chrono::floor<std::chrono::seconds>(st);
-  if (second != std::exchange(second_, second)) in_second_ = bytes_in_second_ = 0;
-  bytes_in_second_ += bytes;
+  second_.add(st, bytes);
   const auto flood = [](std::string_view limit, std::string_view where, SimTime at) {
     return Fault{Kind::kFlood,
                  fmt::format("more than {} {} ST {:.6g} s", limit, where, to_seconds(at))};
   };
   if (++in_step_ > kMaxMessagesInAStep)
     return flood(fmt::format("{} messages", kMaxMessagesInAStep), "at", st);
-  if (++in_second_ > kMaxMessagesInASecond)
-    return flood(fmt::format("{} messages", kMaxMessagesInASecond), "in the second from", second);
-  if (bytes_in_second_ > kMaxRadioBytesInASecond)
-    return flood(fmt::format("{} MiB", kMaxRadioBytesInASecond >> 20), "in the second from",
-                 second);
+  if (second_.has_too_many())
+    return flood(fmt::format("{} messages", kMaxMessagesInASecond), "in the second from",
+                 second_.begin());
+  if (second_.has_too_much())
+    return flood(fmt::format("{} MiB", kMaxBytesInASecond >> 20), "in the second from",
+                 second_.begin());
   return std::nullopt;
 }
 

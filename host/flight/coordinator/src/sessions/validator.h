@@ -23,10 +23,11 @@ inline constexpr std::size_t kMaxWaitingSetpoints = 65'536;
 /// Limits on the messages by radio of a SUT: between two steps of ST, in a second of ST (to each of
 /// 250 UAVs 40 times a second), their bytes in a second (0.5 Gbit/s), and those for which its queue
 /// has no room (`RadioTraffic::flood_of`). They bound the record and what an ideal radio has in
-/// transit. A SUT that exceeds them loses its session; the others finish.
+/// transit. A SUT that exceeds them loses its session; the others finish. What exceeds those of a
+/// second on the line of a flight controller is lost (`Line`).
 inline constexpr std::size_t kMaxMessagesInAStep = 1'000;
 inline constexpr std::size_t kMaxMessagesInASecond = 10'000;
-inline constexpr std::size_t kMaxRadioBytesInASecond = std::size_t{64} << 20;
+inline constexpr std::size_t kMaxBytesInASecond = std::size_t{64} << 20;
 inline constexpr std::size_t kMaxFullQueues = 1'000;
 /// Limit on the annotations of a SUT in a run: two hours of 1 kB for each of 30 images a second.
 inline constexpr std::size_t kMaxAnnotatedBytes = std::size_t{256} << 20;
@@ -92,6 +93,20 @@ class AnnotationBudget {
   std::size_t spent_bytes_ = 0;
 };
 
+/// What one sender sends in each second of ST.
+class SecondOfSending {
+ public:
+  /// @pre not before the last one
+  void add(SimTime at, std::size_t bytes);
+  SimTime begin() const { return begin_; }
+  bool has_too_many() const { return messages_ > kMaxMessagesInASecond; }
+  bool has_too_much() const { return bytes_ > kMaxBytesInASecond; }
+
+ private:
+  SimTime begin_{};
+  std::size_t messages_ = 0, bytes_ = 0;
+};
+
 /// Limits the messages by radio of one SUT.
 class RadioBudget {
  public:
@@ -100,10 +115,8 @@ class RadioBudget {
 
  private:
   SimTime step_{};
-  SimTime second_{};  // begin of the second of ST
   std::size_t in_step_ = 0;
-  std::size_t in_second_ = 0;
-  std::size_t bytes_in_second_ = 0;
+  SecondOfSending second_;
 };
 
 }  // namespace tether::coordinator
